@@ -1,0 +1,10 @@
+"""The ground under every floor: source files with positions, and the faults found in them.
+
+Whatever reads a text that a person wrote (missions, worlds, maps, platform files, options) reports through this package, so that
+every fault names file, line, column, what was expected, what was found and how to mend it, and all faults are told at once.
+It imports nothing of the project.
+"""
+
+from pluto_bt.source.faults import Fault, Faults, InputError, Place, PlutoError, did_you_mean
+
+__all__ = ["Fault", "Faults", "InputError", "Place", "PlutoError", "did_you_mean"]
