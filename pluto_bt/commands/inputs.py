@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,27 @@ Pose = tuple[float, float, float]
 DEFAULT_WORLD, DEFAULT_PLATFORM = "yard.xml", "atrv2"
 
 
+@dataclass(frozen=True)
+class Request:
+    """What the user asked for, in his words (the options of `pluto run`)."""
+
+    mission: str
+    world: str | None = None
+    map: str | None = None
+    start: str | None = None
+    platform: str | None = None
+    tree: str | None = None
+    port: Sequence[str] = ()
+    seed: str | None = None
+    set: Sequence[str] = ()
+    plugin: Sequence[str] = ()
+
+    @classmethod
+    def of(cls, args: argparse.Namespace) -> Request:
+        """The request that a parsed command line makes."""
+        return cls(**{field.name: getattr(args, field.name) for field in fields(cls)})
+
+
 @dataclass
 class Inputs:
     """What a run is made of, checked."""
@@ -31,6 +53,8 @@ class Inputs:
     start: Pose
     seed: int
     ports: dict[str, str]
+    tree: str | None
+    plugins: tuple[str, ...]
 
 
 def add_input_options(parser: argparse.ArgumentParser) -> None:
@@ -47,26 +71,26 @@ def add_input_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes may be used; may be repeated")
 
 
-def read_inputs(args: argparse.Namespace, beside: Path | None = None) -> Inputs:
+def read_inputs(request: Request, beside: Path | None = None) -> Inputs:
     """Read and check all inputs but the mission itself.
 
     Raises: InputError with every fault found.
     """
     faults = Faults()
-    mission_path = find_file("mission", args.mission, faults, beside)
-    world = _world(args.world or DEFAULT_WORLD, faults, beside)
-    a_priori = _world(args.map, faults, beside) if args.map else None
-    robot = _robot(args.platform or (world.robot.platform if world else "") or DEFAULT_PLATFORM, args.set, faults, beside)
-    start = _start(args.start, faults)
-    seed = _seed(args.seed, faults)
-    ports = _ports(args.port, faults)
+    mission_path = find_file("mission", request.mission, faults, beside)
+    world = _world(request.world or DEFAULT_WORLD, faults, beside)
+    a_priori = _world(request.map, faults, beside) if request.map else None
+    robot = _robot(request.platform or (world.robot.platform if world else "") or DEFAULT_PLATFORM, request.set, faults, beside)
+    start = _start(request.start, faults)
+    seed = _seed(request.seed, faults)
+    ports = _ports(request.port, faults)
     if world is not None and robot is not None:
         start = start or world.robot.pose or (0.0, 0.0, 0.0)
-        _check_place(world, robot, start, Place(f"--start {args.start}") if args.start else world.robot.place, faults)
+        _check_place(world, robot, start, Place(f"--start {request.start}") if request.start else world.robot.place, faults)
         _check_topics(world, faults)
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
-    return Inputs(mission_path, world, a_priori, robot, start, world.seed if seed is None else seed, ports)
+    return Inputs(mission_path, world, a_priori, robot, start, world.seed if seed is None else seed, ports, request.tree, tuple(request.plugin))
 
 
 def _world(name: str, faults: Faults, beside: Path | None) -> World | None:

@@ -35,27 +35,6 @@ class Listener(Protocol):
 class Part:
     """A module at work."""
 
-    __slots__ = (
-        "_back_off_ns",
-        "_budget_ns",
-        "component",
-        "error",
-        "failed_at_ns",
-        "failures",
-        "fault",
-        "has_given_up",
-        "is_running",
-        "listener",
-        "module",
-        "overruns",
-        "resume_at_ns",
-        "row",
-        "slow_ns",
-        "steps",
-        "total_ns",
-        "worst_ns",
-    )  # fmt: skip
-
     def __init__(self, module: Module, component: Component, row: int, listener: Listener) -> None:
         self.module = module
         self.component = component
