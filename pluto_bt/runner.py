@@ -9,12 +9,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from pluto_bt.blackboard.messages import Event
+from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
-from pluto_bt.maps.world import World
 from pluto_bt.result import RunResult
-from pluto_bt.runtime.clock import MonotonicClock, VirtualClock, wall_ns
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wall_ns
 from pluto_bt.system import Options, System
+from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 from pluto_bt.trees.mission import Mission
 
 
@@ -63,33 +63,32 @@ class Runner:
         return self.result
 
     def _sum_up(self, wall_time_s: float) -> RunResult:
-        system, simulator, core = self.system, self.system.simulator, self.system.executive.core
+        system, simulator = self.system, self.system.simulator
         result, reason, text = self._outcome()
-        pose = system.board.newest("Localization/Pose")
-        believed: Any = None if pose is None else pose.value
+        sample = system.board.newest("Localization/Pose")
+        believed = sample.value if sample is not None and isinstance(sample.value, Pose) else None
         contacts = [_contact(contact, "collision") for contact in simulator.collisions] + [_contact(contact, "hit-by") for contact in simulator.hit_by]
         clearance_m = simulator.min_clearance_m
+        activity = system.executive.core.mission
         return RunResult(
-            result=result, reason=reason, text=text, sim_time_s=round(system.clock.now_s(), 9), wall_time_s=wall_time_s, ticks=core.ticks,
-            distance_m=simulator.distance_m, collisions=len(simulator.collisions), hit_by=len(simulator.hit_by),
-            min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
+            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=wall_time_s,
+            ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
+            hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], believed.pose[3]),
-            trace_sha256=system.trace.sha256(), leaves=self.mission.statuses(), blackboard=_plain(self.mission), contacts=contacts,
+            trace_sha256=system.trace.sha256(), leaves=self.mission.statuses(), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
         )  # fmt: skip
 
     def _outcome(self) -> tuple[str, str, str]:
         """(result, reason, sentence)."""
-        system, core = self.system, self.system.executive.core
-        if core.error is not None:
-            return "STOPPED", "leaf-error", str(core.error)
+        system, activity = self.system, self.system.executive.core.mission
+        if activity is not None and activity.error is not None:
+            return "STOPPED", "leaf-error", activity.text
         if system.ended is not None:
             return system.ended
-        if core.state == "succeeded":
-            return "SUCCESS", "", ""
-        if core.state == "aborted":
-            return "STOPPED", "stopped", core.reason
-        return "FAILURE", core.reason, self.mission.deciding_text()
+        if activity is None or activity.state == ABORTED:
+            return "STOPPED", "stopped", "" if activity is None else activity.reason
+        return ("SUCCESS" if activity.state == SUCCEEDED else "FAILURE"), activity.reason, activity.text
 
     def goals(self) -> Sequence[tuple[float, float]]:
         """The goals that the mission drove to, for the picture."""
@@ -99,11 +98,3 @@ class Runner:
 
 def _contact(contact: Any, kind: str) -> dict[str, Any]:
     return {"kind": kind, "t_s": contact.t_s, "x_m": contact.x_m, "y_m": contact.y_m, "with_id": contact.with_id, "speed_mps": contact.speed_mps}
-
-
-def _plain(mission: Mission) -> dict[str, Any]:
-    """The root entries of the mission's blackboard."""
-    return dict(mission.blackboard.items())
-
-
-__all__ = ["Runner", "World"]

@@ -128,7 +128,7 @@ class System:
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
         )  # fmt: skip
         self.robot = RobotLink(context)
-        context.extras.update(simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: tuple(self._parts.values()))
+        context.extras.update(simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts)
         return context
 
     def _make_parts(self, rows: list[Module]) -> None:
@@ -173,6 +173,11 @@ class System:
         self.track.add(self.simulator.time_s, self.simulator.pose)
 
     # ------------------------------------------------------------------ what others ask
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Every module at work, in table order."""
+        return tuple(self._parts.values())
 
     def is_running(self, name: str) -> bool:
         """True if the module's thread runs."""
@@ -244,7 +249,8 @@ class System:
                 self._hung(part)
 
     def _hung(self, part: Part) -> None:
-        leaf = self.executive.core.mission.active_leaf() if part.module.name == "executive" and self.executive.core.mission else ""
+        active = self.executive.core.active
+        leaf = active.mission.current_leaf() if part.module.name == "executive" and active is not None else ""
         what = f'leaf "{leaf}" never returned' if leaf else f'module "{part.module.name}" never returned'
         part.fault = "hang"
         self._end("STOPPED", "hung", what)
@@ -302,7 +308,8 @@ class System:
                 self._hung(stuck)
 
     def _is_over(self) -> bool:
-        if self.ended is not None or self.executive.core.is_over:
+        mission = self.executive.core.mission
+        if self.ended is not None or (mission is not None and mission.is_over):
             return True
         if self._interrupt.is_set():
             self._end("STOPPED", "interrupted", "interrupted by Ctrl-C")
@@ -318,9 +325,8 @@ class System:
 
     def _settle(self) -> None:
         """Bring the robot to rest: stop every link, then let time pass until it stands."""
-        core = self.executive.core
-        if not core.is_over and self._parts["executive"].fault != "hang":
-            core.abort(self.ended[1] if self.ended else "stopped")
+        if self._parts["executive"].fault != "hang":
+            self.executive.core.abort(self.ended[1] if self.ended else "stopped")
         self.stop_robot("supervision")
         limit_s = self.clock.now_s() + STOP_WITHIN_S
         self._interrupt.clear()

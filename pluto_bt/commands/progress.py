@@ -49,20 +49,20 @@ class Progress:
             print(self._status(system, now_ns), file=self._stream, flush=True)
 
     def _status(self, system: System, now_ns: int) -> str:
-        simulator, core = system.simulator, system.executive.core
+        simulator, active = system.simulator, system.executive.core.active
         now_s = system.clock.now_s()
         wall_s = max((now_ns - self._begun_ns) / 1e9, 1e-3)
-        leaf = core.mission.active_leaf() if core.mission is not None else ""
+        state, leaf = ("idle", "") if active is None else (active.state, active.mission.active_leaf())
         clearance = "" if math.isinf(simulator.clearance_m) else f"  clear {simulator.clearance_m:.2f} m"
-        return f"{now_s:8.1f} s  × {now_s / wall_s:<5.0f} {core.state}  {leaf}  {simulator.velocity[0]:+.2f} m/s{clearance}"
+        return f"{now_s:8.1f} s  × {now_s / wall_s:<5.0f} {state}  {leaf}  {simulator.velocity[0]:+.2f} m/s{clearance}"
 
     def _draw(self, system: System, now_ns: int) -> None:
         lines = [self._status(system, now_ns)]
-        mission = system.executive.core.mission
-        if self._watch and mission is not None:
+        active = system.executive.core.active
+        if self._watch and active is not None:
             from pluto_bt.trees.dump import dump
 
-            lines = [*dump(mission, "unicode").splitlines(), *lines]
+            lines = [*dump(active.mission, "unicode").splitlines(), *lines]
         self._clear()
         print("\n".join(line[:150] for line in lines), end="", file=self._stream, flush=True)
         self._drawn_lines = len(lines)

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
-from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, NodeState, TreeState
+import msgspec
+
+from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, NodeState, Pose, TreeState
 from pluto_bt.modules.context import Context
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.trace import Trace
+from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
 from pluto_bt.trees.mission import Mission
 
@@ -31,7 +34,7 @@ class Executive:
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
         self.core = Core(context.extras["robot"], lambda level, code, text: self.say(level, code, "mission", text))
-        self._shown: tuple[object, ...] = ()
+        self._shown: MissionState | None = None
         self._shown_statuses = ""
         self._steps = 0
 
@@ -48,13 +51,12 @@ class Executive:
     def step(self, now_s: float) -> None:
         """One turn of the executive, then what changed goes to the blackboard."""
         ticked = self.core.step(now_s)
-        mission = self.core.mission
-        statuses = "" if mission is None else mission.status_line()
-        if ticked:
-            self._record(now_s, statuses)
-        if statuses != self._shown_statuses and mission is not None:
-            self._shown_statuses = statuses
-            self._show_tree(mission, now_s)
+        if ticked is not None:
+            statuses = ticked.mission.status_line()
+            self._record(ticked, statuses)
+            if statuses != self._shown_statuses:
+                self._shown_statuses = statuses
+                self._tree.put(TreeState(now_s, ticked.ticks, tuple(node_states(ticked.mission))), now_s)
         self._show_mission(now_s)
         if self._steps % SHOW_MODULES_EVERY == 0:
             self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._parts())), now_s)
@@ -68,21 +70,19 @@ class Executive:
             self._events.put(event, now_s)
             self.on_event(event)
 
-    def _record(self, now_s: float, statuses: str) -> None:
+    def _record(self, ticked: Activity, statuses: str) -> None:
         sample = self._pose()
-        pose = None if sample is None else sample.value.pose  # type: ignore[attr-defined]  # the topic carries poses
-        self._trace.line({"t": self._clock.now_ns(), "tick": self.core.ticks, "run": self.core.run, "nodes": statuses, "pose": pose})
-
-    def _show_tree(self, mission: Mission, now_s: float) -> None:
-        self._tree.put(TreeState(now_s, self.core.ticks, tuple(node_states(mission))), now_s)
+        pose = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
+        self._trace.line({"t": self._clock.now_ns(), "tick": ticked.ticks, "run": ticked.number, "nodes": statuses, "pose": pose})
 
     def _show_mission(self, now_s: float) -> None:
-        core, mission = self.core, self.core.mission
-        step = "" if mission is None else mission.active_leaf()
-        shown = (core.state, core.reason, step, core.run)
-        if shown != self._shown:
-            self._shown = shown
-            self._mission.put(MissionState(now_s, "" if mission is None else mission.name, core.run, core.state, core.reason, step, core.ticks), now_s)
+        activity = self.core.mission
+        if activity is None:
+            return
+        state = MissionState(0.0, activity.mission.name, activity.number, activity.state, activity.reason, activity.mission.active_leaf())
+        if state != self._shown:
+            self._shown = state
+            self._mission.put(msgspec.structs.replace(state, stamp_s=now_s, ticks=activity.ticks), now_s)
 
 
 def node_states(mission: Mission) -> list[NodeState]:
