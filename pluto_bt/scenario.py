@@ -12,7 +12,7 @@ from typing import Any
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import Event
 from pluto_bt.commands.inputs import Request, read_inputs
-from pluto_bt.runner import Runner, load_inputs
+from pluto_bt.runner import Runner, make_runner
 from pluto_bt.system import TrackPoint
 
 
@@ -93,6 +93,6 @@ class Play:
         )  # fmt: skip
         events: list[Event] = []
         inputs = read_inputs(request, self._folder)
-        runner = load_inputs(inputs, realtime=realtime, speed=speed, max_time_s=max_time_s, nodes=tuple(nodes), gateway=gateway, on_event=events.append)
+        runner = make_runner(inputs, realtime=realtime, speed=speed, max_time_s=max_time_s, nodes=tuple(nodes), gateway=gateway, on_event=events.append)
         runner.run()
         return Run(runner, events)

@@ -15,7 +15,7 @@ from pluto_bt.maps.load import load_world
 from pluto_bt.maps.placement import placed_outline, what_stands_at
 from pluto_bt.maps.world import SetTopic, World
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
-from pluto_bt.source import Fault, Faults, InputError, Place, did_you_mean
+from pluto_bt.source import Faults, InputError, Place, did_you_mean
 
 Pose = tuple[float, float, float]
 DEFAULT_WORLD, DEFAULT_PLATFORM = "yard.xml", "atrv2"
@@ -83,7 +83,7 @@ def read_inputs(request: Request, beside: Path | None = None) -> Inputs:
     robot = _robot(request.platform or (world.robot.platform if world else "") or DEFAULT_PLATFORM, request.set, faults, beside)
     start = _start(request.start, faults)
     seed = _seed(request.seed, faults)
-    ports = _ports(request.port, faults)
+    ports = read_ports(request.port, faults)
     if world is not None and robot is not None:
         start = start or world.robot.pose or (0.0, 0.0, 0.0)
         _check_place(world, robot, start, Place(f"--start {request.start}") if request.start else world.robot.place, faults)
@@ -104,7 +104,7 @@ def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
         return None
 
 
-def _robot(name: str, settings: list[str], faults: Faults, beside: Path | None) -> RobotFile | None:
+def _robot(name: str, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
     local = beside / name if beside is not None else None
     try:
         return load_robot_file(str(local) if local is not None and local.is_file() else name, settings)
@@ -135,7 +135,8 @@ def _seed(text: str | None, faults: Faults) -> int | None:
     return int(text)
 
 
-def _ports(settings: list[str], faults: Faults) -> dict[str, str]:
+def read_ports(settings: Sequence[str], faults: Faults) -> dict[str, str]:
+    """`--port NAME=VALUE` settings as a table."""
     ports: dict[str, str] = {}
     for setting in settings:
         name, equals, value = setting.partition("=")
@@ -143,6 +144,21 @@ def _ports(settings: list[str], faults: Faults) -> dict[str, str]:
             faults.error(Place(f"--port {setting}"), "bad-port", "an input has the form NAME=VALUE", found=setting)
         ports[name] = value
     return ports
+
+
+def check_world(name: str, platform: str | None) -> None:
+    """Check a world alone: its file, its robot's place, the topics that its script sets.
+
+    Raises: InputError with every fault found.
+    """
+    faults = Faults()
+    world = _world(name, faults, None)
+    if world is not None:
+        robot = _robot(platform or world.robot.platform or DEFAULT_PLATFORM, (), faults, None)
+        if robot is not None and world.robot.pose is not None:
+            _check_place(world, robot, world.robot.pose, world.robot.place, faults)
+        _check_topics(world, faults)
+    faults.raise_errors()
 
 
 def _check_place(world: World, robot: RobotFile, start: Pose, place: Place, faults: Faults) -> None:
@@ -170,4 +186,4 @@ def as_faults(error: InputError) -> list[dict[str, str | int]]:
     return [fault.as_json() for fault in error.faults]
 
 
-__all__ = ["Fault", "Inputs", "add_input_options", "as_faults", "read_inputs"]
+__all__ = ["Inputs", "Request", "add_input_options", "as_faults", "check_world", "read_inputs", "read_ports"]

@@ -51,17 +51,17 @@ def _positive(text: str) -> float:
 
 
 def _run(args: argparse.Namespace) -> RunResult:
-    from pluto_bt.commands.inputs import read_inputs
+    from pluto_bt.commands.inputs import Request, read_inputs
     from pluto_bt.commands.outputs import check_outputs
     from pluto_bt.commands.progress import Progress
 
     check_outputs(args)
-    inputs = read_inputs(args)
-    from pluto_bt.runner import Runner
-
+    inputs = read_inputs(Request.of(args))
     progress = Progress(sys.stderr if args.json else sys.stdout, watch=args.watch)
-    runner = Runner(inputs, realtime=args.realtime, speed=args.speed, max_time_s=args.max_time, trace_path=args.trace, gateway=args.gateway,
-                    on_event=progress.event, on_progress=progress.show)  # fmt: skip
+    from pluto_bt.runner import make_runner
+
+    runner = make_runner(inputs, realtime=args.realtime, speed=args.speed, max_time_s=args.max_time, trace_path=args.trace, gateway=args.gateway,
+                         on_event=progress.event, on_progress=progress.show)  # fmt: skip
     with runner.interruptible():
         result = runner.run()
     progress.end(result)
