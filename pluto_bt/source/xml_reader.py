@@ -7,6 +7,7 @@ linear in the length whatever the input. Document types are refused: they are on
 
 from __future__ import annotations
 
+import gc
 import re
 from pathlib import Path
 
@@ -19,9 +20,10 @@ __all__ = ["MAX_DEPTH", "MAX_ELEMENTS", "XmlAttribute", "XmlComment", "XmlElemen
 
 MAX_DEPTH = 256
 MAX_ELEMENTS = 50_000
-ITEMS_PER_ELEMENT = 10  # attributes, comments and pieces of text are limited too
+ITEMS_PER_ELEMENT = 10  # attributes, entities, comments and pieces of text are limited too
+DUPLICATE_COST = 100  # an attribute that is repeated for ever soon ends the reading
 _TAG = re.compile(NAME)
-_ATTRIBUTE = re.compile(rf"""\s*+(?:({NAME})\s*+=\s*+(?:"([^"]*+)"|'([^']*+)')|(/?>))""")
+_ATTRIBUTE = re.compile(rf"""\s*+(?:({NAME})\s*+=\s*+("[^"]*+"|'[^']*+')|/?>)""")
 _END_TAG = re.compile(rf"</\s*+({NAME})\s*+>")
 _WORD = re.compile(r"<!\w{0,20}")
 _ENTITY = re.compile(r"&(?:#([0-9]{1,7})|#x([0-9a-fA-F]{1,6})|(amp|lt|gt|quot|apos));")
@@ -36,15 +38,20 @@ def read_xml(
     Args:
         file: the name to show in faults.
         max_depth: how many elements may stand inside one another.
-        max_elements: how many elements there may be; ten times as many attributes, comments and pieces of text.
+        max_elements: how many elements there may be; ten times as many attributes, entities, comments and pieces of text.
     """
     if len(text) > max_bytes:
         faults.error(Place(file), "too-large", "the text is too large", expected=f"at most {max_bytes} characters", found=str(len(text)))
         return None
+    collecting = gc.isenabled()
+    gc.disable()  # a growing tree holds no garbage, and looking for it would take twice as long as reading
     try:
         return _Scanner(SourceText(text.removeprefix("\ufeff"), file), faults, max_depth, max_elements).read()
     except XmlSyntaxError:
         return None
+    finally:
+        if collecting:
+            gc.enable()
 
 
 def read_xml_file(
@@ -57,17 +64,33 @@ def read_xml_file(
     return read_xml(text, shown_name, faults, max_depth=max_depth, max_elements=max_elements, max_bytes=max_bytes)
 
 
+class _Open:
+    """An element whose end tag is not read yet, with the text and the comments found in it so far."""
+
+    __slots__ = ("comments", "element", "length", "pieces", "runs")
+
+    def __init__(self, element: XmlElement) -> None:
+        self.element = element
+        self.pieces: list[str] = []
+        self.runs: list[tuple[int, int]] = []
+        self.comments: list[XmlComment] = []
+        self.length = 0
+
+    def close(self) -> None:
+        """The element is complete."""
+        self.element.text = "".join(self.pieces)
+        self.element.text_runs, self.element.comments = self.runs, self.comments
+
+
 class _Scanner:
-    """One reading: the elements open at this point and the text found in each so far."""
+    """One reading, from left to right; `_open` are the elements around the point that is reached."""
 
     def __init__(self, source: SourceText, faults: Faults, max_depth: int, max_elements: int) -> None:
         self._source, self._text, self._report = source, source.text, XmlReport(source, faults)
         self._max_depth, self._max_elements = max_depth, max_elements
         self._elements_left, self._items_left = max_elements, ITEMS_PER_ELEMENT * max_elements
         self._root: XmlElement | None = None
-        self._open: list[XmlElement] = []
-        self._pieces: list[list[str]] = []  # of the text of each open element
-        self._lengths: list[int] = []  # of the text of each open element
+        self._open: list[_Open] = []
 
     def read(self) -> XmlElement:
         """The root element, or an `XmlSyntaxError` whose fault is noted."""
@@ -85,7 +108,7 @@ class _Scanner:
 
     def _finished(self) -> XmlElement:
         if self._open:
-            left = self._open[-1]
+            left = self._open[-1].element
             what = f"<{left.tag}> is never closed"
             raise self._report.stop(left.start, "unclosed-tag", what, expected=f"</{left.tag}>", found="the end of the file")
         if self._root is None:
@@ -109,7 +132,7 @@ class _Scanner:
             after = self._after("-->", at, "a comment", skip=4)
             if self._open:
                 parent = self._open[-1]
-                parent.comments.append(XmlComment(self._text[at + 4 : after - 3], len(parent.children), self._source, at))
+                parent.comments.append(XmlComment(self._text[at + 4 : after - 3], len(parent.element.children), self._source, at))
             return after
         if self._text.startswith("<![CDATA[", at):
             after = self._after("]]>", at, "a CDATA section", skip=9)
@@ -121,7 +144,7 @@ class _Scanner:
 
     def _after(self, closing: str, at: int, what: str, skip: int) -> int:
         """The offset after `closing`, looked for from `skip` characters behind `at`."""
-        self._count_item(at)
+        self._count_items(1, at)
         end = self._text.find(closing, at + skip)
         if end < 0:
             raise self._report.stop(at, "unclosed", f"{what} is never closed", expected=closing, found="the end of the file")
@@ -132,13 +155,11 @@ class _Scanner:
         if name is None:
             mend = "write a < that is text as &lt;"
             raise self._report.stop(at, "xml-syntax", "no tag begins here", expected="a name after <", found=self._report.found(at), mend=mend)
-        element = XmlElement(name.group(), self._source, at, self._open[-1] if self._open else None)
+        element = XmlElement(name.group(), self._source, at, self._open[-1].element if self._open else None, {}, [])
         self._admit(element)
         after = self._attributes(element, name.end())
         if self._text[after - 2] != "/":
-            self._open.append(element)
-            self._pieces.append([])
-            self._lengths.append(0)
+            self._open.append(_Open(element))
         return after
 
     def _admit(self, element: XmlElement) -> None:
@@ -159,16 +180,19 @@ class _Scanner:
 
     def _attributes(self, element: XmlElement, at: int) -> int:
         """Read the attributes up to and including `>` or `/>`; the offset after it."""
-        attributes = element.attributes
+        attributes, source = element.attributes, self._source
         while found := _ATTRIBUTE.match(self._text, at):
             at = found.end()
-            if found.end(4) >= 0:
+            name, quoted = found.groups()
+            if name is None:
                 return at
-            name, group = found.group(1), 2 if found.end(2) >= 0 else 3
+            start = found.start(1)
             if name in attributes:
-                self._report.duplicate_attribute(element, name, found.start(1))
-            self._count_item(found.start(1))
-            attributes[name] = XmlAttribute(name, _decoded(found.group(group)), self._source, found.start(1), *found.span(group))
+                self._report.duplicate_attribute(element, name, start)
+                self._count_items(DUPLICATE_COST, start)
+            value = quoted[1:-1]
+            self._count_items(1 + value.count("&"), start)
+            attributes[name] = XmlAttribute(name, _decoded(value) if "&" in value else value, source, start, found.start(2) + 1)
         raise self._report.bad_attribute(element, at)
 
     def _end_tag(self, at: int) -> int:
@@ -178,11 +202,10 @@ class _Scanner:
         name = found.group(1)
         if not self._open:
             raise self._report.stop(at, "mismatched-tag", f"</{name}> closes nothing", expected="no end tag", found=f"</{name}>")
-        element = self._open.pop()
-        if element.tag != name:
-            raise self._report.mismatched_tag(element, name, at, self._open)
-        element.text = "".join(self._pieces.pop())
-        self._lengths.pop()
+        inner = self._open.pop()
+        if inner.element.tag != name:
+            raise self._report.mismatched_tag(inner.element, name, at, [outer.element for outer in self._open])
+        inner.close()
         return found.end()
 
     def _character_data(self, start: int, end: int) -> None:
@@ -208,21 +231,22 @@ class _Scanner:
         if not self._open:
             self._refuse_text(start, start + len(piece))
         elif piece:
-            self._count_item(start)
-            self._open[-1].text_runs.append((self._lengths[-1], start))
-            self._pieces[-1].append(piece)
-            self._lengths[-1] += len(piece)
+            self._count_items(1, start)
+            inner = self._open[-1]
+            inner.runs.append((inner.length, start))
+            inner.pieces.append(piece)
+            inner.length += len(piece)
 
-    def _count_item(self, at: int) -> None:
-        self._items_left -= 1
+    def _count_items(self, count: int, at: int) -> None:
+        self._items_left -= count
         if self._items_left < 0:
-            what, most = "the file has too many attributes, comments and pieces of text", ITEMS_PER_ELEMENT * self._max_elements
+            what, most = "the file has too many attributes, entities, comments and pieces of text", ITEMS_PER_ELEMENT * self._max_elements
             raise self._report.stop(at, "too-many-nodes", what, expected=f"at most {most}", found="more")
 
 
 def _decoded(raw: str) -> str:
     """The five named and the numeric entities decoded; anything else that begins with `&` stays as it is."""
-    return _ENTITY.sub(_character, raw) if "&" in raw else raw
+    return _ENTITY.sub(_character, raw)
 
 
 def _character(entity: re.Match[str]) -> str:

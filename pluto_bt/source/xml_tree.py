@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bisect
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from pluto_bt.source.faults import Place
@@ -18,7 +19,6 @@ class XmlAttribute:
     source: SourceText = field(repr=False, compare=False)
     start: int = field(repr=False, compare=False)
     value_start: int = field(repr=False, compare=False)
-    value_end: int = field(repr=False, compare=False)
 
     @property
     def place(self) -> Place:
@@ -32,7 +32,7 @@ class XmlAttribute:
 
     def place_at(self, index: int) -> Place:
         """The place of `value[index]`; the first character of the value if entities were decoded in it."""
-        exact = self.value_end - self.value_start == len(self.value)
+        exact = self.source.text.startswith(self.value, self.value_start)
         return self.source.place(self.value_start + (index if exact else 0))
 
 
@@ -53,17 +53,20 @@ class XmlComment:
 
 @dataclass(slots=True, eq=False)
 class XmlElement:
-    """One element. `text` is all character data directly inside it, decoded, without its children's."""
+    """One element. `text` is all character data directly inside it, decoded, without its children's.
+
+    `text_runs` says where the text stands: (index in `text`, offset in the source) for each run of it.
+    """
 
     tag: str
     source: SourceText = field(repr=False)
     start: int = field(repr=False)
-    parent: XmlElement | None = field(default=None, repr=False)
-    attributes: dict[str, XmlAttribute] = field(default_factory=dict)
-    children: list[XmlElement] = field(default_factory=list)
-    comments: list[XmlComment] = field(default_factory=list)
+    parent: XmlElement | None = field(repr=False)
+    attributes: dict[str, XmlAttribute]
+    children: list[XmlElement]
+    comments: Sequence[XmlComment] = ()
     text: str = ""
-    text_runs: list[tuple[int, int]] = field(default_factory=list, repr=False)  # (index in text, offset in source)
+    text_runs: Sequence[tuple[int, int]] = field(default=(), repr=False)
 
     def get(self, name: str, default: str = "") -> str:
         """The value of an attribute, or `default`."""
