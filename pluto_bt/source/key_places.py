@@ -29,6 +29,10 @@ class KeyPlaces:
         """The place of a key."""
         return self._nearest(path, self._keys)
 
+    def first(self) -> Place:
+        """The beginning of the text: where something that is missing is told."""
+        return self._source.place(0)
+
     def value(self, path: KeyPath) -> Place:
         """The place of a value."""
         return self._nearest(path, self._values) if path in self._values else self(path)
