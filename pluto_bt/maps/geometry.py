@@ -44,4 +44,5 @@ def transform_points(pose_ab: Pose, points_b_m: ArrayLike) -> NDArray[np.float64
     """(n, 2) points given in frame b, seen from a: a new (n, 2) array. No points give no points."""
     points = np.asarray(points_b_m, dtype=np.float64).reshape(-1, 2)
     cos, sin = math.cos(pose_ab[2]), math.sin(pose_ab[2])
-    return points @ np.array(((cos, sin), (-sin, cos))) + pose_ab[:2]
+    moved: NDArray[np.float64] = points @ np.array(((cos, sin), (-sin, cos))) + pose_ab[:2]
+    return moved
