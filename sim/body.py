@@ -22,7 +22,8 @@ class Body:
     Attributes:
         x_m, y_m, theta_rad: pose of the point under the crossing of the wheel diagonals; theta is not wrapped.
         speed_mps, turn_rate_radps: of the body. wheel_speed_mps, wheel_turn_rate_radps: of the wheels, also when the body is held.
-        wheel_distance_m, wheel_heading_rad: what the wheels have run; path_m: length of the true path.
+        wheel_distance_m, wheel_heading_rad: what the wheels have run; path_m: length of the true path;
+            driven_m: the same, backwards counted negative.
     """
 
     def __init__(self, platform: Platform, start: Pose, seed: int, ideal: bool, time: SimTime) -> None:
@@ -50,7 +51,7 @@ class Body:
         self.speed_mps, self.turn_rate_radps = s[motion.BODY_SPEED], s[motion.BODY_TURN_RATE]
         self.wheel_speed_mps, self.wheel_turn_rate_radps = s[motion.WHEEL_SPEED], s[motion.WHEEL_TURN_RATE]
         self.wheel_distance_m, self.wheel_heading_rad = s[motion.WHEEL_DISTANCE], s[motion.WHEEL_HEADING]
-        self.path_m = s[motion.PATH_LENGTH]
+        self.path_m, self.driven_m = s[motion.PATH_LENGTH], s[motion.BODY_DISTANCE]
 
     @property
     def pose(self) -> Pose:
@@ -98,6 +99,7 @@ class Body:
         speed, turn_rate = self.last_arc()
         self._state[:3] = motion.along_arc(before, speed, turn_rate, share * TICK_S)
         self._state[motion.PATH_LENGTH] -= abs(speed) * TICK_S * (1.0 - share)
+        self._state[motion.BODY_DISTANCE] -= speed * TICK_S * (1.0 - share)
         self._state[motion.BODY_SPEED] = self._state[motion.BODY_TURN_RATE] = 0.0
         self._read()
 

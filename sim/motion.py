@@ -26,7 +26,8 @@ WHEEL_DISTANCE, WHEEL_HEADING = 9, 10
 PATH_LENGTH = 11
 ARC_SPEED, ARC_TURN_RATE = 12, 13  # of the last tick: the body moved along this arc
 STEERING, STEERING_SERVO = 14, 15  # percent, positive to the left: as commanded, and as the servo really stands
-STATE_SIZE = 16
+BODY_DISTANCE = 16  # signed way of the body
+STATE_SIZE = 17
 
 # The plant vector: what does not change in a run.
 TICK, ACCELERATION, DECELERATION, TURN_ACCELERATION, LAG_SHARE, STEERING_RATE, CURVATURE_PER_PERCENT = range(7)
@@ -65,6 +66,7 @@ def move_body(state: Vector, speed_mps: float, turn_rate_radps: float, grip: flo
     state[ARC_SPEED] = mean_speed
     state[ARC_TURN_RATE] = mean_turn_rate
     state[PATH_LENGTH] += abs(mean_speed) * dt_s
+    state[BODY_DISTANCE] += mean_speed * dt_s
 
 
 @kernel
