@@ -40,15 +40,26 @@ class Surroundings:
         self._bring_actors()
         self._scene.cones(x_m, y_m, theta_rad, z_m, opening_rad, max_range_m, out_m)
 
-    def gap_m(self, outline_m: Array) -> float:
-        """Distance from the outline to everything solid; 0 or less in contact."""
+    def solid_gap_m(self, outline_m: Array) -> float:
+        """Distance from the outline to everything solid; 0 in contact."""
         self._bring_actors()
         return self._scene.clearance(outline_m).distance_m
 
+    def gap_m(self, outline_m: Array) -> float:
+        """Distance from the outline to everything solid; 0 in contact, or with a corner over a hole: that counts as contact too."""
+        if self._hole_ids and self._scene.over_hole(outline_m):
+            return 0.0
+        return self.solid_gap_m(outline_m)
+
     def contacts(self, outline_m: Array) -> list[Nearest]:
-        """Everything solid that the outline overlaps."""
+        """Everything solid that the outline overlaps, and a hole that it reaches over."""
         self._bring_actors()
-        return self._scene.contacts(outline_m)
+        found = self._scene.contacts(outline_m)
+        if self._hole_ids and (hole := self._scene.over_hole(outline_m)):
+            middle = self._scene.outline_of(hole).mean(axis=0)
+            x, y = outline_m[np.argmin(((outline_m - middle) ** 2).sum(axis=1))].tolist()
+            found.append(Nearest(0.0, x, y, hole))
+        return found
 
     def actors(self) -> dict[str, tuple[float, float, float]]:
         """Those present: id → (x m, y m, radius m)."""

@@ -107,7 +107,8 @@ class Travel:
         beyond = self._around.contacts(self._outline.at(self._body.pose))
         self._body.hold(before, share)
         backed_off = motion.along_arc(self._body.pose, *twist, -TICK_S)
-        closing_mps = max(self._gap_m(backed_off) - self._gap_m(self._body.pose), 0.0) / TICK_S
+        fastest_mps = abs(twist[0]) + abs(twist[1]) * self._outline.radius_m
+        closing_mps = min((self._gap_m(backed_off) - self._gap_m(self._body.pose)) / TICK_S, fastest_mps)  # a hole's gap is a cliff
         for contact in beyond:
             self._note(contact, closing_mps)
 

@@ -38,4 +38,4 @@ class BumperSensor:
 
     def _presses(self, panel: Outline | None) -> bool:
         """True if something solid touches the panel."""
-        return panel is not None and self._around.gap_m(panel.at(self._body.pose)) <= 0.0
+        return panel is not None and self._around.solid_gap_m(panel.at(self._body.pose)) <= 0.0
