@@ -6,11 +6,14 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pluto_bt.blackboard.codes import LinkStatus
+from pluto_bt.maps.kernel import kernel
 from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.outline import Array, Outline
 
+Mask = NDArray[np.bool_]
 ECHO_SPREAD = 0.25  # the echo came from somewhere in the cone: it is put on the axis and at this share of the opening to each side
 
 
@@ -44,7 +47,7 @@ class SonarRing:
             return None
         return self.place(np.maximum(ranges, self.min_range_m), ranges < min(within_m, self.max_range_m), margin_m)
 
-    def place(self, ranges_m: Array, wanted: np.ndarray[tuple[int], np.dtype[np.bool_]], margin_m: float) -> Array:
+    def place(self, ranges_m: Array, wanted: Mask, margin_m: float) -> Array:
         """The points of the transducers in the mask `wanted`."""
         mask = wanted.repeat(3)
         echoes = ranges_m.repeat(3)[mask]
@@ -66,3 +69,24 @@ def where_word(x_m: float, y_m: float) -> str:
     """ "3 degrees left", "120 degrees right": the bearing of a point for a sentence."""
     bearing_deg = math.degrees(math.atan2(y_m, x_m))
     return f"{abs(bearing_deg):.0f} degrees {'left' if bearing_deg >= 0.0 else 'right'}"
+
+
+@kernel
+def unexplained(axes: Array, ranges_m: Array, half_cone_rad: float, points: Array, slack_m: float) -> Mask:
+    """Which echoes no known point explains: nothing known lies in the cone as near as the echo (a glass door, a low kerb).
+
+    Args:
+        axes: (k, 3) transducers, x m, y m, theta rad.
+        points: (n, 3) known points in the robot frame.
+        slack_m: how much farther than the echo a point may be and still explain it.
+    """
+    open_echo = np.ones(axes.shape[0], dtype=np.bool_)
+    for k in range(axes.shape[0]):
+        c, s = np.cos(axes[k, 2]), np.sin(axes[k, 2])
+        for i in range(points.shape[0]):
+            dx, dy = points[i, 0] - axes[k, 0], points[i, 1] - axes[k, 1]
+            ahead, aside = c * dx + s * dy, c * dy - s * dx
+            if dx * dx + dy * dy < (ranges_m[k] + slack_m) ** 2 and abs(aside) <= ahead * np.tan(half_cone_rad) + slack_m:
+                open_echo[k] = False
+                break
+    return open_echo
