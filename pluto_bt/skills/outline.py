@@ -32,7 +32,7 @@ class Outline:
 
     def distance_m(self, x_m: float, y_m: float) -> float:
         """How far a point is from the outline; negative inside. At corners the nearer of the two edges' lines counts, which is never too far."""
-        return max(nx * x_m + ny * y_m - c for nx, ny, c in self.planes.tolist())
+        return float(max(nx * x_m + ny * y_m - c for nx, ny, c in self.planes.tolist()))
 
 
 def outline_of(corners_m: Sequence[Point]) -> Outline:
