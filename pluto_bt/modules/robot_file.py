@@ -7,11 +7,13 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from estimation.parameters import LocalParameters, MarkerGateParameters
 from pluto_bt.maps.platform import Platform
+from pluto_bt.modules.dmu import DmuParameters
+from pluto_bt.modules.local import LocalParameters
+from pluto_bt.modules.marker import MarkerParameters
 from pluto_bt.runtime.parameters import build, override
 from pluto_bt.skills.avoid import AvoidParameters
-from pluto_bt.skills.car_goto import CarParameters
+
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.motion import MotionParameters
 from pluto_bt.source import Faults, InputError, Place, did_you_mean
@@ -26,9 +28,10 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
     drive: DriveParameters = DriveParameters()
     avoid: AvoidParameters = AvoidParameters()
     motion: MotionParameters = MotionParameters()
-    car: CarParameters = CarParameters()
+
     local: LocalParameters = LocalParameters()
-    marker_gate: MarkerGateParameters = MarkerGateParameters()
+    dmu: DmuParameters = DmuParameters()
+    marker: MarkerParameters = MarkerParameters()
 
 
 def load_robot_file(name: str, settings: Sequence[str] = ()) -> RobotFile:
