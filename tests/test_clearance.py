@@ -112,6 +112,16 @@ def test_deep_inside_the_solid_part_of_a_map_is_contact():
     assert scene.clearance(at(ROBOT, 5.6, 0.0)).distance_m == pytest.approx(0.6)
 
 
+def test_a_cell_wholly_under_a_large_robot_is_contact_whatever_else_is_near():
+    occupied = np.zeros((40, 40), dtype=np.uint8)
+    occupied[20, 20] = occupied[5, 20] = 1
+    grid = OccupancyGrid(occupied, occupied * 0, 0.1, (0.0, 0.0, 0.0))
+    scene = Scene(World("w", grid=grid, shapes=(polygon("p", at(SQUARE, 2.05, 4.10)),)))
+    outline = at(SQUARE, 2.05, 2.05)
+    assert scene.clearance(outline).distance_m == 0.0
+    assert [contact.owner for contact in scene.contacts(outline)] == ["map"]
+
+
 def test_a_map_far_away_has_the_exact_distance():
     occupied = np.zeros((3, 700), dtype=np.uint8)
     occupied[1, 699] = 1

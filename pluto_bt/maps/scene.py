@@ -55,7 +55,7 @@ class Scene:
         self._changes = 0
         self._moved_m = 0.0
         self._angles = np.zeros(0)
-        self._fan = fan_of(self._angles)
+        self._fan, self._ranges = fan_of(self._angles), np.zeros(0)
         self._cone_table = np.zeros((6, 0))
         self._outline = np.zeros((0, 2))
         self._found = np.zeros((len(self.owners), 4))
@@ -149,9 +149,10 @@ class Scene:
         if angles_rad is not self._angles or angles_rad.flags.writeable:
             self._take_angles(angles_rad)
         self._scan(
-            x_m, y_m, yaw_rad, z_m, tilt_rad, max_range_m, self._fan, out_m,
+            x_m, y_m, yaw_rad, z_m, tilt_rad, max_range_m, self._fan, self._ranges,
             self._segments, self._blocks, self._rings, self._discs, self._free, self._frame,
         )  # fmt: skip
+        out_m[:] = self._ranges  # the kernels are compiled for one kind of array, whatever the caller's is
 
     def cones(
         self, x_m: ArrayLike, y_m: ArrayLike, theta_rad: ArrayLike, z_m: float, opening_rad: float, max_range_m: float, out_m: Array
@@ -212,7 +213,7 @@ class Scene:
 
     def _take_angles(self, angles_rad: Array) -> None:
         if not np.array_equal(angles_rad, self._angles):
-            self._fan = fan_of(angles_rad)
+            self._fan, self._ranges = fan_of(angles_rad), np.zeros(len(angles_rad))
         self._angles = angles_rad if not angles_rad.flags.writeable else angles_rad.copy()
 
     def _answers(self, question: Callable[..., int], outline_m: ArrayLike) -> list[Nearest]:
