@@ -43,7 +43,8 @@ def cells(grid):
     x, y, theta = grid.origin
     turn = np.array([[math.cos(theta), math.sin(theta)], [-math.sin(theta), math.cos(theta)]])
     for row, column in np.argwhere(grid.occupied):
-        yield (np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) + [column, row]) * grid.resolution_m @ turn + [x, y]
+        corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1]]) + np.array((column, row))
+        yield corners * grid.resolution_m @ turn + np.array((x, y))
 
 
 def plain(world):

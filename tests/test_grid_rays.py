@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from slow_rays import slow_walk
 
 from pluto_bt.maps.free_squares import INSIDE, LONGEST, free_squares
 from pluto_bt.maps.grid_rays import grid_ranges
-from slow_rays import slow_walk
 
 REACH = 50.0
 

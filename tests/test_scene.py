@@ -160,7 +160,9 @@ def test_shapes_come_and_go():
 
 
 def test_actors_walk_come_and_go():
-    scene = Scene(World("w", actors=(Actor("ann", 0.25, 1.0, True, np.array([[4.0, 0.0], [8.0, 0.0]])), Actor("bob", 0.25, 1.0, True, np.array([[2.0, 0.0]]), absent=True))))
+    ann = Actor("ann", 0.25, 1.0, True, np.array([[4.0, 0.0], [8.0, 0.0]]))
+    bob = Actor("bob", 0.25, 1.0, True, np.array([[2.0, 0.0]]), absent=True)
+    scene = Scene(World("w", actors=(ann, bob)))
     assert one_beam(scene) == 3.75
     scene.show_disc("bob", True)
     assert one_beam(scene) == 1.75
@@ -174,10 +176,11 @@ def test_actors_walk_come_and_go():
     assert one_beam(scene, z_m=1.9) == MAX_RANGE_M
 
 
-@pytest.mark.parametrize("call", [lambda s: s.remove("dor"), lambda s: s.place("dor", 1.0, 1.0), lambda s: s.move_disc("dor", 0, 0), lambda s: s.show_disc("dor", True)])
-def test_an_unknown_id_is_refused(call):
+@pytest.mark.parametrize(("call", "more"), [("remove", ()), ("place", (1.0, 1.0)), ("move_disc", (0.0, 0.0)), ("show_disc", (True,))])
+def test_an_unknown_id_is_refused(call, more):
+    scene = Scene(World("w", shapes=(wall("door", (0, 1), (1, 1)),)))
     with pytest.raises(KeyError, match="dor"):
-        call(Scene(World("w", shapes=(wall("door", (0, 1), (1, 1)),))))
+        getattr(scene, call)("dor", *more)
 
 
 def test_moving_an_actor_outlasts_a_change_of_shapes():

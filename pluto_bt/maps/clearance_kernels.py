@@ -43,13 +43,15 @@ GRID_OWNER = 0.0  # row of the static map among the owners
 @kernel
 def nearest_solid(
     outline: Table, segments: Table, blocks: Table, rings: Table, discs: Table, free: NDArray[np.uint8], frame: Table, found: Table
-) -> None:
-    """The nearest solid thing into `found[0]`; distance inf and owner -1 if there is none.
+) -> int:
+    """The nearest solid thing into `found[0]`; returns how many there are, 0 or 1, or -1 for an outline that is not finite.
 
     A circle around the outline gives a bound that leaves the exact test to the few things that may be nearest.
     """
-    found[0, GAP], found[0, GAP_OWNER] = math.inf, -1.0
+    found[0, GAP] = math.inf
     cx, cy, radius = outline_circle(outline)
+    if not math.isfinite(cx + cy + radius):
+        return -1
     for m in range(discs.shape[0]):
         reach = found[0, GAP] + radius + discs[m, DISC_RADIUS]
         if discs[m, DISC_RADIUS] >= 0.0 and distance2(cx, cy, discs[m, DISC_X], discs[m, DISC_Y]) < reach * reach:
@@ -69,15 +71,21 @@ def nearest_solid(
     if free.size and found[0, GAP] > 0.0:
         gap, x, y = map_gap(outline, free, frame, found[0, GAP])
         keep_nearest(found, gap, x, y, GRID_OWNER)
+    return 1 if math.isfinite(found[0, GAP]) else 0
 
 
 @kernel
 def touching_solids(
     outline: Table, segments: Table, blocks: Table, rings: Table, discs: Table, free: NDArray[np.uint8], frame: Table, found: Table
 ) -> int:
-    """All owners that share a point with the outline, one row of `found` each; returns how many. `found` has a row for every owner."""
+    """All owners that share a point with the outline, one row of `found` each; returns how many, -1 for an outline that is not finite.
+
+    `found` has a row for every owner.
+    """
     count = 0
     cx, cy, radius = outline_circle(outline)
+    if not math.isfinite(cx + cy + radius):
+        return -1
     if free.size:
         gap, x, y = map_gap(outline, free, frame, 1e-9)
         count = note_contact(found, count, gap, x, y, GRID_OWNER)

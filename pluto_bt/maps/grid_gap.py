@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from pluto_bt.maps.free_squares import INSIDE, LONGEST
 from pluto_bt.maps.kernel import kernel
-from pluto_bt.maps.outline import box_gap, outline_circle
+from pluto_bt.maps.outline import box_gap, outline_circle, outline_distance
 
 Table = NDArray[np.float64]
+
+HALF_DIAGONAL = 0.7072  # of a cell
 
 
 @kernel
@@ -40,8 +42,8 @@ def grid_gap(free: NDArray[np.uint8], outline: Table, limit: float) -> tuple[flo
         column, last = math.floor(max(cx - half, 0.0)), min(cx + half, columns - 1.0)
         while column <= last:
             side = max(free[0, row, column], free[2, row, column])
-            if side == 0:
-                other, ox, oy = box_gap(outline, column, row, 1.0)
+            if side == 0 and outline_distance(outline, column + 0.5, row + 0.5) - HALF_DIAGONAL <= min(gap, limit):
+                other, ox, oy = box_gap(outline, column, row)
                 if other < min(gap, limit):
                     gap, x, y, reach = other, ox, oy, other + radius
             column += 1 if side == 0 or side == INSIDE else int(side)

@@ -115,10 +115,11 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
         t = tx if leaps_x else ty
         if t >= end:
             return reach
-        across = y + t * dy if leaps_x else x + t * dx
+        across = (y if leaps_x else x) + t * (dy if leaps_x else dx)
         cell = int(across)
         if abs(across - cell - 0.5) > 0.5 - NEAR_A_LINE:
-            cell = settle(y, across, per_y, t, iy, side, up, True) if leaps_x else settle(x, across, per_x, t, ix, side, right, False)
+            at, per, i, rising = (y, per_y, iy, up) if leaps_x else (x, per_x, ix, right)
+            cell = settle(at, across, per, t, i, side, rising, leaps_x)
         ix = ix + way_x * side if leaps_x else cell
         iy = cell if leaps_x else iy + way_y * side
 

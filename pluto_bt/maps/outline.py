@@ -106,20 +106,60 @@ def disc_gap(outline: Table, cx: float, cy: float, radius: float) -> tuple[float
     return distance - radius, cx + (x - cx) * (radius / distance), cy + (y - cy) * (radius / distance)
 
 
+@inline_kernel
+def outline_distance(outline: Table, x: float, y: float) -> float:
+    """Distance from a point to the outline; 0 inside."""
+    if outline_holds(outline, x, y):
+        return 0.0
+    least2 = math.inf
+    ax, ay = outline[-1, 0], outline[-1, 1]
+    for i in range(outline.shape[0]):
+        bx, by = outline[i, 0], outline[i, 1]
+        px, py = nearest_on_segment(x, y, ax, ay, bx, by)
+        least2 = min(least2, distance2(x, y, px, py))
+        ax, ay = bx, by
+    return math.sqrt(least2)
+
+
 @kernel
-def box_gap(outline: Table, left: float, low: float, side: float) -> tuple[float, float, float]:
-    """Distance from the outline to an upright square, 0 if they share a point, and the point of the square where that is."""
-    right, high = left + side, low + side
+def box_gap(outline: Table, left: float, low: float) -> tuple[float, float, float]:
+    """Distance from the outline to an upright unit square, 0 if they share a point, and the point of the square where that is.
+
+    What does not overlap is nearest at a corner of one of the two.
+    """
     if outline_holds(outline, left, low):
         return 0.0, left, low
-    x, y = outline[0, 0], outline[0, 1]
-    if left <= x <= right and low <= y <= high:
-        return 0.0, x, y
-    gap, gx, gy = segment_gap(outline, left, low, right, low)
-    for k in range(3):
-        x1, y1 = (left, high) if k == 0 else (left, low) if k == 1 else (right, low)
-        x2, y2 = (right, high) if k != 1 else (left, high)
-        other, ox, oy = segment_gap(outline, x1, y1, x2, y2)
-        if other < gap:
-            gap, gx, gy = other, ox, oy
-    return gap, gx, gy
+    least2, x, y = math.inf, left, low
+    ax, ay = outline[-1, 0], outline[-1, 1]
+    for i in range(outline.shape[0]):
+        bx, by = outline[i, 0], outline[i, 1]
+        enters, share = enters_box(ax - left, ay - low, bx - ax, by - ay)
+        if enters:
+            return 0.0, ax + share * (bx - ax), ay + share * (by - ay)
+        px, py = min(max(bx, left), left + 1.0), min(max(by, low), low + 1.0)
+        gap2 = distance2(bx, by, px, py)
+        if gap2 < least2:
+            least2, x, y = gap2, px, py
+        for corner in range(4):
+            cx, cy = left + (corner & 1), low + (corner >> 1)
+            px, py = nearest_on_segment(cx, cy, ax, ay, bx, by)
+            gap2 = distance2(cx, cy, px, py)
+            if gap2 < least2:
+                least2, x, y = gap2, cx, cy
+        ax, ay = bx, by
+    return math.sqrt(least2), x, y
+
+
+@inline_kernel
+def enters_box(x: float, y: float, dx: float, dy: float) -> tuple[bool, float]:
+    """Whether the segment from (x, y) by (dx, dy) shares a point with the unit square at the origin, and at which share of it first."""
+    start, end = 0.0, 1.0
+    for axis in range(2):
+        at, by = (x, dx) if axis == 0 else (y, dy)
+        if by == 0.0:
+            if at < 0.0 or at > 1.0:
+                return False, 0.0
+        else:
+            near, far = -at / by, (1.0 - at) / by
+            start, end = max(start, min(near, far)), min(end, max(near, far))
+    return start <= end, start

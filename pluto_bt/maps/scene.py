@@ -8,6 +8,7 @@ comes down from above lands on the top. Walls and outlines have no thickness. A 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +37,9 @@ class Nearest(NamedTuple):
     owner: str
 
 
+NOTHING = Nearest(math.inf, math.nan, math.nan, "")
+
+
 class Scene:
     """Static map and shapes of a world, plus moving discs. Changed only by the first four calls; all others are questions."""
 
@@ -51,7 +55,7 @@ class Scene:
         self._changes = 0
         self._moved_m = 0.0
         self._angles = np.zeros(0)
-        self._fan = fan_of(self._angles)
+        self._fan, self._ranges = fan_of(self._angles), np.zeros(0)
         self._cone_table = np.zeros((6, 0))
         self._outline = np.zeros((0, 2))
         self._found = np.zeros((len(self.owners), 4))
@@ -145,9 +149,10 @@ class Scene:
         if angles_rad is not self._angles or angles_rad.flags.writeable:
             self._take_angles(angles_rad)
         self._scan(
-            x_m, y_m, yaw_rad, z_m, tilt_rad, max_range_m, self._fan, out_m,
+            x_m, y_m, yaw_rad, z_m, tilt_rad, max_range_m, self._fan, self._ranges,
             self._segments, self._blocks, self._rings, self._discs, self._free, self._frame,
         )  # fmt: skip
+        out_m[:] = self._ranges  # the kernels are compiled for one kind of array, whatever the caller's is
 
     def cones(
         self, x_m: ArrayLike, y_m: ArrayLike, theta_rad: ArrayLike, z_m: float, opening_rad: float, max_range_m: float, out_m: Array
@@ -179,17 +184,14 @@ class Scene:
 
         Raises: ValueError for fewer than three corners or numbers that are not finite.
         """
-        self._nearest(
-            self._take_outline(outline_m), self._segments, self._blocks, self._rings, self._discs, self._free, self._frame, self._found
-        )  # fmt: skip
-        return self._nearest_in(0)
+        return (self._answers(self._nearest, outline_m) or [NOTHING])[0]
 
     def contacts(self, outline_m: ArrayLike) -> list[Nearest]:
-        """Everything that shares a point with the outline, one entry each, with a point in both."""
-        count = self._touching(
-            self._take_outline(outline_m), self._segments, self._blocks, self._rings, self._discs, self._free, self._frame, self._found
-        )  # fmt: skip
-        return [self._nearest_in(i) for i in range(count)]
+        """Everything that shares a point with the outline, one entry each, with a point in both.
+
+        Raises: ValueError as `clearance`.
+        """
+        return self._answers(self._touching, outline_m)
 
     def over_hole(self, outline_m: ArrayLike) -> str:
         """The id of a hole that the outline reaches over; "" if none. A hole is nothing solid: `clearance` does not see it."""
@@ -211,18 +213,23 @@ class Scene:
 
     def _take_angles(self, angles_rad: Array) -> None:
         if not np.array_equal(angles_rad, self._angles):
-            self._fan = fan_of(angles_rad)
+            self._fan, self._ranges = fan_of(angles_rad), np.zeros(len(angles_rad))
         self._angles = angles_rad if not angles_rad.flags.writeable else angles_rad.copy()
 
+    def _answers(self, question: Callable[..., int], outline_m: ArrayLike) -> list[Nearest]:
+        """What a kernel finds around an outline."""
+        outline = self._take_outline(outline_m)
+        count = question(outline, self._segments, self._blocks, self._rings, self._discs, self._free, self._frame, self._found)
+        if count < 0:
+            raise ValueError(f"the corners of an outline are finite, not {outline.tolist()}")
+        return [Nearest(distance_m, x_m, y_m, self.owners[int(owner)]) for distance_m, x_m, y_m, owner in self._found[:count].tolist()]
+
     def _take_outline(self, outline_m: ArrayLike) -> Array:
-        corners = np.asarray(outline_m)
+        """The outline in an array of our own, whatever kind the caller's is: the kernels are compiled for one kind."""
+        corners = np.asarray(outline_m, dtype=np.float64)
         if self._outline.shape != corners.shape:
+            if corners.ndim != 2 or len(corners) < 3 or corners.shape[1] != 2:
+                raise ValueError(f"an outline has three or more corners (x, y), not {corners.tolist()}")
             self._outline = np.zeros(corners.shape)
         self._outline[:] = corners
-        if self._outline.ndim != 2 or len(corners) < 3 or not math.isfinite(self._outline.sum()):
-            raise ValueError(f"an outline has three or more finite corners, not {corners.tolist()}")
         return self._outline
-
-    def _nearest_in(self, i: int) -> Nearest:
-        distance_m, x_m, y_m, owner = self._found[i].tolist()
-        return Nearest(distance_m, x_m, y_m, self.owners[int(owner)] if owner >= 0 else "")

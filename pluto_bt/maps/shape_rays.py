@@ -22,12 +22,23 @@ Table = NDArray[np.float64]
 def cast_wall(fan: Table, out: Table, x1: float, y1: float, x2: float, y2: float, z: float, height: float) -> None:
     """Shorten the beams that meet the wall from (x1, y1) to (x2, y2)."""
     low, high = sight(fan, x1, y1, x2, y2)
+    cross = x1 * y2 - x2 * y1
+    edge_on = cross * cross <= 1e-8 * (x1 * x1 + y1 * y1) * (x2 * x2 + y2 * y2)
     while low <= fan[HEAD, LAST_RAD]:
         first, end = beams_within(fan, out.shape[0], low, high)
-        for i in range(first, end):
-            t = wall_range(fan[DIRECTION_X, i], fan[DIRECTION_Y, i], x1, y1, x2, y2)
-            if 0.0 <= t < out[i] and z + fan[SLOPE, i] * t <= height:
-                out[i] = t
+        if edge_on:
+            for i in range(first, end):
+                t = wall_range(fan[DIRECTION_X, i], fan[DIRECTION_Y, i], x1, y1, x2, y2)
+                if 0.0 <= t < out[i] and z + fan[SLOPE, i] * t <= height:
+                    out[i] = t
+        else:  # the same without branches, for several beams at a time
+            for i in range(np.uintp(first), np.uintp(max(first, end))):
+                dx, dy = fan[DIRECTION_X, i], fan[DIRECTION_Y, i]
+                side1, side2 = dx * y1 - dy * x1, dx * y2 - dy * x2
+                along1, along2 = dx * x1 + dy * y1, dx * x2 + dy * y2
+                t = along1 + (along2 - along1) * (side1 / (side1 - side2))
+                meets = (side1 * side2 <= 0.0) & (t >= 0.0) & (t < out[i]) & (z + fan[SLOPE, i] * t <= height)
+                out[i] = t if meets else out[i]
         low += 2.0 * math.pi
         high += 2.0 * math.pi
 
