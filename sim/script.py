@@ -16,7 +16,7 @@ class Script:
         timed = [(ticks_up(round(entry.t_s * NS)), entry) for entry in world.script if isinstance(entry, At)]
         self._timed = sorted(timed, key=lambda item: item[0])
         self._next = 0
-        places = {item.id: item.points for item in (*world.terrains, *world.areas)}
+        places = {terrain.id: terrain.points for terrain in world.terrains} | {area.id: area.points for area in world.areas}
         self._whens = [entry for entry in world.script if isinstance(entry, When) and entry.inside in places]
         self._regions = Regions([places[when.inside] for when in self._whens])
         self._inside: tuple[int, ...] = ()

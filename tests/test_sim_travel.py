@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point, Polygon
+from sim_worlds import at, box, cart, of_type, points, room, run
 
 from drivers.records import BumperRecord, OdometryRecord
 from pluto_bt.maps.platform import Bumpers
 from pluto_bt.maps.world import Actor, OccupancyGrid, Put, Remove, Shape, World
 from sim import Simulator
-from sim_worlds import at, box, cart, of_type, points, room, run
 
 
 def test_the_robot_stops_exactly_at_a_wall_and_the_collision_is_told_once_with_place_time_and_speed() -> None:
