@@ -18,9 +18,8 @@ from sim import Simulator
 def yard() -> World:
     """Things to see, somebody who walks, something that fails."""
     walker = Actor("person", 0.25, 1.0, True, points((3.0, 3.0), (-3.0, 3.0), (-3.0, -4.0)))
-    return room(
-        box("crate", 2.5, -1.0, 0.5, 0.7), actors=(walker,), markers=(Marker(1, 0.0, 0.0, 0.0),), script=(at(0.5, FaultAction("sonar", "garbage", for_s=0.5)),)
-    )  # fmt: skip
+    script = (at(0.5, FaultAction("sonar", "garbage", for_s=0.5)),)
+    return room(box("crate", 2.5, -1.0, 0.5, 0.7), actors=(walker,), markers=(Marker(1, 0.0, 0.0, 0.0),), script=script)
 
 
 def everything_read(platform: Platform, seed: int) -> dict[str, list[Any]]:

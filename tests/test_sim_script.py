@@ -35,7 +35,8 @@ def everything() -> Platform:
     from pluto_bt.maps.platform import Bumpers, Compass, Gps, Inertial, Laser, MarkerCamera, Odometry, Sonar, Transducer, WheelSpeed, Wrist
 
     devices: dict[str, Any] = {
-        "laser": Laser(x_m=0.3, beams=19, arrival_delay_s=0.0, resolution_m=0.0), "sonar": Sonar(transducers=(Transducer(x_m=0.4, y_m=0, theta_deg=0),)),
+        "laser": Laser(x_m=0.3, beams=19, arrival_delay_s=0.0, resolution_m=0.0),
+        "sonar": Sonar(transducers=(Transducer(x_m=0.4, y_m=0.0, theta_deg=0.0),)),
         "bumpers": Bumpers(), "dmu": Inertial(), "imu": Inertial(absolute=True), "compass": Compass(), "gps": Gps(rate_hz=10.0),
         "wrist": Wrist(), "marker": MarkerCamera(delay_s=0.0, rate_hz=10.0), "speed": WheelSpeed(), "odometry": Odometry(),
     }  # fmt: skip
@@ -205,7 +206,8 @@ def test_a_fault_of_a_device_that_the_robot_does_not_have_changes_nothing() -> N
 
 def test_actions_happen_at_their_time_in_the_order_of_the_file() -> None:
     told: list[tuple[float, str, str]] = []
-    script = (at(2.0, SetTopic("a", "1"), SetTopic("b", "2")), at(1.005, SetTopic("c", "3")), at(2.0, SetTopic("d", "4")), at(0.0, SetTopic("e", "5")))
+    a, b, c, d, e = (SetTopic(topic, value) for topic, value in (("a", "1"), ("b", "2"), ("c", "3"), ("d", "4"), ("e", "5")))
+    script = (at(2.0, a, b), at(1.005, c), at(2.0, d), at(0.0, e))
     sim = Simulator(World("w", script=script), cart(), 0)
     sim.on_set_topic = lambda topic, value: told.append((sim.time_s, topic, value))
     sim.step(0.0)

@@ -98,7 +98,8 @@ def test_the_wrist_turns_the_laser() -> None:
 
 
 def test_sonar_sees_the_nearest_thing_in_its_cone_within_its_limits() -> None:
-    ring = tuple(Transducer(x_m=0.4 * math.cos(a), y_m=0.4 * math.sin(a), theta_deg=math.degrees(a)) for a in (0.0, math.pi / 2, math.pi, -math.pi / 2))
+    quarters = (0.0, math.pi / 2, math.pi, -math.pi / 2)
+    ring = tuple(Transducer(x_m=0.4 * math.cos(a), y_m=0.4 * math.sin(a), theta_deg=math.degrees(a)) for a in quarters)
     post = Shape("post", "circle", points((2.0, 0.2)), radius_m=0.1)
     near = box("near", -0.49, -4.0, 0.0 + 0.05, 3.4)
     sonar = Sonar(transducers=ring, max_range_m=4.0, min_range_m=0.25, cone_deg=30.0)
