@@ -40,6 +40,7 @@ class Body:
         if self.servo:
             self._plant[motion.STEERING_RATE] = self.servo.rate_percent_per_s
             self._plant[motion.CURVATURE_PER_PERCENT] = self.servo.curvature_per_percent
+        self._advance_wheels, self._advance_car = motion.advance_wheels.compiled(), motion.advance_car.compiled()
         self._state = np.zeros(motion.STATE_SIZE)
         self._state[:3] = start
         self._read()
@@ -50,6 +51,7 @@ class Body:
         self.x_m, self.y_m, self.theta_rad = s[motion.X], s[motion.Y], s[motion.THETA]
         self.speed_mps, self.turn_rate_radps = s[motion.BODY_SPEED], s[motion.BODY_TURN_RATE]
         self.wheel_speed_mps, self.wheel_turn_rate_radps = s[motion.WHEEL_SPEED], s[motion.WHEEL_TURN_RATE]
+        self._setpoint_mps, self._setpoint_radps = s[motion.SPEED_SETPOINT], s[motion.TURN_SETPOINT]
         self.wheel_distance_m, self.wheel_heading_rad = s[motion.WHEEL_DISTANCE], s[motion.WHEEL_HEADING]
         self.path_m, self.driven_m = s[motion.PATH_LENGTH], s[motion.BODY_DISTANCE]
 
@@ -68,9 +70,9 @@ class Body:
         if blocked:
             self._stand_still()
         elif self.servo:
-            motion.advance_car(self._state, self._plant, self.motors.command[0], self.servo.percent, self.servo.error, 1.0 - slip, n_ticks)
+            self._advance_car(self._state, self._plant, self.motors.command[0], self.servo.percent, self.servo.error, 1.0 - slip, n_ticks)
         else:
-            motion.advance_wheels(self._state, self._plant, *self.motors.command, 1.0 - slip, n_ticks)
+            self._advance_wheels(self._state, self._plant, *self.motors.command, 1.0 - slip, n_ticks)
         self._read()
 
     def _stand_still(self) -> None:
@@ -82,10 +84,9 @@ class Body:
 
     def reach_m(self, n_ticks: int, radius_m: float) -> float:
         """An upper bound of how far any point of the outline can move in the next `n_ticks`."""
-        setpoint_v, setpoint_w = float(self._state[motion.SPEED_SETPOINT]), float(self._state[motion.TURN_SETPOINT])
         command_v, command_w = self.motors.command
-        speed = max(abs(setpoint_v), abs(command_v), abs(self.wheel_speed_mps))
-        turn_rate = max(abs(setpoint_w), abs(command_w), abs(self.wheel_turn_rate_radps))
+        speed = max(abs(self._setpoint_mps), abs(command_v), abs(self.wheel_speed_mps))
+        turn_rate = max(abs(self._setpoint_radps), abs(command_w), abs(self.wheel_turn_rate_radps))
         if self.servo:
             turn_rate = speed * 100.0 * self.servo.curvature_per_percent
         return n_ticks * TICK_S * (speed + turn_rate * radius_m)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 BLOCK = 1024  # single numbers are drawn in blocks: one call of numpy costs as much as 200 numbers
+ROWS = 64
 
 
 class Noise:
@@ -42,6 +43,11 @@ class Noise:
             return value
         self._uniforms = iter(self._block_uniforms.random(BLOCK).tolist())
         return next(self._uniforms)
+
+    def rows(self, n: int) -> Iterator[list[float]]:
+        """Endless rows of `n` standard normal numbers, for sensors that need as many in every sample. Draws from the arrays' stream."""
+        while True:
+            yield from self._array_normals.standard_normal((ROWS, n)).tolist()
 
     def normals(self, n: int) -> NDArray[np.float64]:
         """(n,) numbers, mean 0, standard deviation 1."""

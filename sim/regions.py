@@ -25,8 +25,8 @@ class Regions:
         self._x, self._y, self._margin_m = 0.0, 0.0, -1.0 if starts else math.inf
 
     def at(self, x_m: float, y_m: float) -> tuple[int, ...]:
-        """Indices of the polygons around the point, ascending."""
-        if math.hypot(x_m - self._x, y_m - self._y) >= self._margin_m:
+        """Indices of the polygons around the point, ascending; the same object as long as nothing was looked up anew."""
+        if self._n and math.hypot(x_m - self._x, y_m - self._y) >= self._margin_m:
             self._look(x_m, y_m)
         return self._inside
 

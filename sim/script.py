@@ -16,7 +16,7 @@ class Script:
         timed = [(ticks_up(round(entry.t_s * NS)), entry) for entry in world.script if isinstance(entry, At)]
         self._timed = sorted(timed, key=lambda item: item[0])
         self._next = 0
-        places = {item.id: item.points for item in (*world.terrains, *world.areas)}
+        places = {terrain.id: terrain.points for terrain in world.terrains} | {area.id: area.points for area in world.areas}
         self._whens = [entry for entry in world.script if isinstance(entry, When) and entry.inside in places]
         self._regions = Regions([places[when.inside] for when in self._whens])
         self._inside: tuple[int, ...] = ()
@@ -37,7 +37,7 @@ class Script:
     def entered(self, x_m: float, y_m: float) -> list[Action]:
         """The actions of the places that the robot has entered since the last call; a robot that starts inside enters at the start."""
         inside = self._regions.at(x_m, y_m)
-        if inside is self._inside or inside == self._inside:
+        if inside is self._inside:
             return []
         new = [i for i in inside if i not in self._inside and i not in self._spent]
         self._inside = inside

@@ -6,7 +6,10 @@ The robot's software sees `devices` alone; everything else here is the truth, fo
 from __future__ import annotations
 
 import heapq
+import threading
 from collections.abc import Callable, Mapping
+
+import numpy as np
 
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Platform
@@ -31,10 +34,11 @@ class Simulator:
     ) -> None:
         """`start`: else the world's robot pose, else the origin. `ideal`: the manual's dummies; None = as the world says."""
         self._time = SimTime()
+        self._turn = threading.Lock()  # the scene serves one thread at a time, and displays ask for the clearance from theirs
         ideal = world.robot.ideal if ideal is None else ideal
         pose = start or world.robot.pose or (0.0, 0.0, 0.0)
         self._body = Body(platform, pose, seed, ideal, self._time)
-        self._outline = Outline(platform.body.outline_m)
+        self._outline = Outline(np.array(platform.body.outline_m))
         self._around = Surroundings(world, self._time)
         self._ground = Ground(world)
         self._travel = Travel(self._body, self._outline, self._around, self._time)
@@ -53,14 +57,15 @@ class Simulator:
     def step(self, now_s: float) -> None:
         """Advance to the last tick that is not after `now_s`; what is due on the way happens in order: script, motion, sensors."""
         end_ns = round(now_s * NS) // TICK_NS * TICK_NS
-        if not self._begun:
-            self._begun = True
-            self._travel.look()
-            self._happen()
-        while self._time.now_ns < end_ns:
-            self._body.apply_commands(self._time.now_ns)
-            self._drive_until(min(end_ns, self._next_event_ns()))
-            self._happen()
+        with self._turn:
+            if not self._begun:
+                self._begun = True
+                self._travel.look()
+                self._happen()
+            while self._time.now_ns < end_ns:
+                self._body.apply_commands(self._time.now_ns)
+                self._drive_until(min(end_ns, self._next_event_ns()))
+                self._happen()
 
     def _next_event_ns(self) -> int:
         """The next tick at which anything but plain motion may happen; always in the future."""
@@ -145,7 +150,8 @@ class Simulator:
     @property
     def clearance_m(self) -> float:
         """Exact distance from the outline to everything solid, now; 0 in contact."""
-        return max(self._travel.look(), 0.0)
+        with self._turn:
+            return max(self._travel.look(), 0.0)
 
     @property
     def min_clearance_m(self) -> float:

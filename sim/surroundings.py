@@ -7,6 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from pluto_bt.maps.geometry import Pose
 from pluto_bt.maps.scene import Nearest, Scene
 from pluto_bt.maps.world import World
 from sim.actors import Walker, fastest_mps
@@ -30,7 +31,7 @@ class Surroundings:
         self._actors_at_ns = -1
         self.fastest_mps = fastest_mps(self._walkers.values())
 
-    def scan(self, pose_map_laser: tuple[float, float, float], z_m: float, tilt_rad: float, angles_rad: Array, max_range_m: float, out_m: Array) -> None:
+    def scan(self, pose_map_laser: Pose, z_m: float, tilt_rad: float, angles_rad: Array, max_range_m: float, out_m: Array) -> None:
         """`Scene.scan` now."""
         self._bring_actors()
         self._scene.scan(pose_map_laser, z_m, tilt_rad, angles_rad, max_range_m, out_m)

@@ -15,7 +15,9 @@ from pluto_bt.maps.platform import Platform
 
 FOLDER = Path(pluto_bt.platforms.__file__).parent
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
-SENSORS = {"atrv2": "laser sonar bumpers dmu compass gps wrist", "car": "dmu marker speed steering", "jbot": "sonar imu", "pioneer": "laser sonar dmu"}
+SENSORS = {
+    "atrv2": "laser sonar bumpers dmu compass gps wrist", "car": "dmu marker speed steering", "jbot": "sonar imu", "pioneer": "laser sonar dmu",
+}  # fmt: skip
 
 
 def read(name: str) -> Platform:

@@ -22,37 +22,37 @@ class InertialSensor:
 
     def __init__(self, figures: platform.Inertial, body: Body, ground: Ground, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
-        self._absolute, self._body, self._ground, self._noise = figures.absolute, body, ground, noise
+        self._absolute, self._body, self._ground = figures.absolute, body, ground
+        self._chance = noise.rows(12)
         keep = 0.0 if ideal else 1.0
         self._rate_noise = keep * math.radians(figures.noise_dps)
         self._drift = keep * math.radians(figures.drift_dps_per_sqrt_s)
         self._angle_noise = keep * math.radians(figures.angle_noise_deg)
         self._acceleration_noise = keep * figures.acceleration_noise_mps2
-        self._bias = tuple(keep * math.radians(figures.bias_dps) * noise.normal() for _ in range(3))
+        spread = keep * math.radians(figures.bias_dps)
+        self._bias = (spread * noise.normal(), spread * noise.normal(), spread * noise.normal())
         self._phi, self._psi = ground.tilt_rad(*body.pose)
         self._speed_mps = body.speed_mps
         self._before_s = -self.period_ns / NS
 
     def sample(self, now_s: float) -> InertialRecord:
         """Rates, accelerations and angles now."""
-        body, normal = self._body, self._noise.normal
+        body = self._body
         dt_s = max(now_s - self._before_s, 1e-6)
         self._before_s = now_s
         phi_rate, psi_rate = self._rock(dt_s)
-        walk = self._drift * math.sqrt(dt_s)
-        self._bias = tuple(bias + walk * normal() for bias in self._bias)
-        turn = body.turn_rate_radps
-        level = math.cos(self._phi) * math.cos(self._psi)
-        true_rates = (psi_rate - turn * math.sin(self._phi), phi_rate + turn * math.sin(self._psi), turn * level)
-        forward = (body.speed_mps - self._speed_mps) / dt_s
-        self._speed_mps = body.speed_mps
-        g = GRAVITY_MPS2
-        true_accelerations = (forward - g * math.sin(self._phi), body.speed_mps * turn + g * math.cos(self._phi) * math.sin(self._psi), g * level)
-        x, y, z = (rate + bias + self._rate_noise * normal() for rate, bias in zip(true_rates, self._bias, strict=True))
-        ax, ay, az = (a + self._acceleration_noise * normal() for a in true_accelerations)
-        theta = math.remainder(body.theta_rad + self._angle_noise * normal(), math.tau) if self._absolute else math.nan
-        phi, psi = self._phi + self._angle_noise * normal(), self._psi + self._angle_noise * normal()
-        return InertialRecord(now_s, now_s, (x, y, z), (ax, ay, az), theta, phi, psi)
+        speed, turn, g = body.speed_mps, body.turn_rate_radps, GRAVITY_MPS2
+        forward = (speed - self._speed_mps) / dt_s
+        self._speed_mps = speed
+        sin_phi, cos_phi, sin_psi, cos_psi = math.sin(self._phi), math.cos(self._phi), math.sin(self._psi), math.cos(self._psi)
+        d1, d2, d3, r1, r2, r3, a1, a2, a3, t1, t2, t3 = next(self._chance)
+        walk, rate, push, lean = self._drift * math.sqrt(dt_s), self._rate_noise, self._acceleration_noise, self._angle_noise
+        b1, b2, b3 = self._bias
+        self._bias = b1, b2, b3 = b1 + walk * d1, b2 + walk * d2, b3 + walk * d3
+        rates = (psi_rate - turn * sin_phi + b1 + rate * r1, phi_rate + turn * sin_psi + b2 + rate * r2, turn * cos_phi * cos_psi + b3 + rate * r3)
+        accelerations = (forward - g * sin_phi + push * a1, speed * turn + g * cos_phi * sin_psi + push * a2, g * cos_phi * cos_psi + push * a3)
+        theta = math.remainder(body.theta_rad + lean * t1, math.tau) if self._absolute else math.nan
+        return InertialRecord(now_s, now_s, rates, accelerations, theta, self._phi + lean * t2, self._psi + lean * t3)
 
     def _rock(self, dt_s: float) -> tuple[float, float]:
         """Follow the slope of the ground; gives the rates (phi, psi) of doing so."""

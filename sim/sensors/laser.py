@@ -28,7 +28,7 @@ class LaserSensor:
         field_rad = math.radians(figures.field_deg)
         self._angle_min_rad = -0.5 * field_rad
         self._angle_step_rad = field_rad / (figures.beams - 1)
-        self._angles_rad = self._angle_min_rad + self._angle_step_rad * np.arange(figures.beams)
+        self._angles_rad: NDArray[np.float64] = self._angle_min_rad + self._angle_step_rad * np.arange(figures.beams, dtype=np.float64)
         self._angles_rad.setflags(write=False)  # the scene knows a fan of beams again by its array
 
     def sample(self, now_s: float) -> ScanRecord:

@@ -40,8 +40,9 @@ class SonarSensor:
         x, y = body.x_m + c * self._x_m - s * self._y_m, body.y_m + s * self._x_m + c * self._y_m
         self._around.cones(x, y, self._theta_rad + body.theta_rad, figures.z_m, self._cone_rad, figures.max_range_m, self._ranges_m)
         low, high, spread, lost = figures.min_range_m, figures.max_range_m, figures.noise_m, figures.dropout_rate
-        ranges = self._ranges_m.tolist()
-        for i, range_m in enumerate(ranges):
-            echo = range_m < high and noise.uniform() >= lost
-            ranges[i] = min(max(range_m + spread * noise.normal(), low), high) if echo else high
-        return SonarRecord(now_s, now_s, tuple(ranges))
+        fate, chance = noise.uniforms(n).tolist(), noise.normals(n).tolist()
+        heard = [
+            min(max(range_m + spread * chance[i], low), high) if range_m < high and fate[i] >= lost else high
+            for i, range_m in enumerate(self._ranges_m.tolist())
+        ]
+        return SonarRecord(now_s, now_s, tuple(heard))
