@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 from py_trees.common import Status
-from py_trees.ports import PortInformation
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.codes import GotoStatus
 from pluto_bt.blackboard.messages import BatteryState, BumperState, FVectorState, Pose
 from pluto_bt.skills.map_area import MapArea
-
-NO_PORTS: Final[dict[str, PortInformation]] = {}
 
 
 class Condition(Leaf):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, Final, Protocol
 
 from py_trees.common import Status
-from py_trees.ports import BehaviourWithPorts
+from py_trees.ports import BehaviourWithPorts, PortInformation
 
 from pluto_bt.behaviours.robot import Robot
+
+NO_PORTS: Final[dict[str, PortInformation]] = {}
 
 
 class MissionClock(Protocol):

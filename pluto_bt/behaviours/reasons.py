@@ -17,9 +17,7 @@ class Reason(NamedTuple):
 
 
 REASONS: Final[dict[str, Reason]] = {
-    "bad-command": Reason(
-        "a link of the chain refused the command", "look at the status text of motion, avoidance and drive for the link and the number"
-    ),
+    "bad-command": Reason("a link of the chain refused the command", "see the status text of motion, avoidance and drive"),
     "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),
     "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
     "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid and drive"),
@@ -33,9 +31,7 @@ REASONS: Final[dict[str, Reason]] = {
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
     "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
     "odometry-stale": Reason("the base delivers no odometry", "check the base"),
-    "outside-map": Reason(
-        "the goal, or the straight way to it, leaves the mapped area", "choose a goal inside the area of kind map, in straight reach"
-    ),
+    "outside-map": Reason("the goal, or the straight way to it, leaves the mapped area", "choose a goal inside the mapped area, in straight reach"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
     "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
     "stuck": Reason("goto comes no nearer to its goal", "choose a goal with a clear way, or plan the way with NavigateTo"),

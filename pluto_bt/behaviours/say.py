@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
 from pluto_bt.behaviours.ports import Port
 
 
@@ -12,7 +12,7 @@ class Say(Leaf):
     """Shows `text` in shell, console and log. Without a robot the text is only the node's feedback."""
 
     INPUT_PORTS = {"text": Port(str, True, "what to say")}
-    OUTPUT_PORTS = {}  # type: ignore[var-annotated]  # py_trees declares the type
+    OUTPUT_PORTS = NO_PORTS
 
     def update(self) -> Status:
         """SUCCESS at once."""

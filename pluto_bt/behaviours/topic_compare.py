@@ -9,7 +9,8 @@ from typing import Any, Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.conditions import NO_PORTS, Condition
+from pluto_bt.behaviours.conditions import Condition
+from pluto_bt.behaviours.leaf import NO_PORTS
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
@@ -35,7 +36,7 @@ COMPARE_INPUTS: Final = {
 class TopicCompare(Condition):
     """Compares one field of the newest value of a topic. Numbers compare as numbers, the rest as text."""
 
-    INPUT_PORTS = COMPARE_INPUTS
+    INPUT_PORTS = {**COMPARE_INPUTS}
     OUTPUT_PORTS = NO_PORTS
 
     def ask(self, robot: Robot) -> tuple[bool, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 from pluto_bt.maps.world import World
 
@@ -34,7 +35,7 @@ class MapArea:
         if (x0, y0) == (x1, y1) or not self._polygons:
             return True
         shares = sorted({0.0, 1.0, *(share for edge in self._edges for share in _crossings(x0, y0, x1, y1, *edge))})
-        middles = ((a + b) / 2.0 for a, b in zip(shares, shares[1:], strict=False))
+        middles = ((a + b) / 2.0 for a, b in pairwise(shares))
         return all(self.has_point(x0 + s * (x1 - x0), y0 + s * (y1 - y0)) for s in middles)
 
 
