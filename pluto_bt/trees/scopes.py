@@ -82,6 +82,7 @@ class Board:
 
     def __init__(self, topics: Topics | None = None) -> None:
         self.topics = topics
+        self.robot: Any = None
         self.topic_names = frozenset(topics.names()) if topics is not None else frozenset()
         self.changes = 0  # counts entries made and removed, so that readers know when to look again
         self.scopes: list[Scope] = []

@@ -1,0 +1,159 @@
+"""A loaded mission: ticking, halting, and what can be asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from pluto_bt.trees.board_view import BoardView
+from pluto_bt.trees.engine.context import Context
+from pluto_bt.trees.engine.errors import StepError, TickError
+from pluto_bt.trees.engine.leaf import told
+from pluto_bt.trees.engine.node import reset
+from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
+from pluto_bt.trees.scopes import Board
+from pluto_bt.trees.tracked import NodeState, Tracked
+
+
+class Mission:
+    """One instance of a main tree. Two missions share nothing.
+
+    Attributes:
+        name: the ID of the main tree.
+        root: its first node, a py_trees behaviour.
+        blackboard: the root entries, a mapping.
+    """
+
+    def __init__(self, name: str, root: Any, tracked: list[Tracked], board: Board, context: Context) -> None:
+        self.name, self.root = name, root
+        self.blackboard = BoardView(board.root)
+        self.ticks = 0
+        self._tracked, self._context = tracked, context
+        self._make_paths_unique()
+
+    # -- ticking
+
+    def tick_once(self) -> str:
+        """One tick, repeated while the root is RUNNING and a node has asked for another: "SUCCESS", "FAILURE", "RUNNING" or "SKIPPED".
+
+        Raises: TickError if a node broke its promise; the tree is halted before.
+        """
+        return self._tick(again=True)
+
+    def tick_exactly_once(self) -> str:
+        """One tick of the root, whatever nodes ask for. Raises TickError as `tick_once`."""
+        return self._tick(again=False)
+
+    def _tick(self, again: bool) -> str:
+        context, root = self._context, self.root
+        self.ticks += 1
+        try:
+            self._before_tick()
+            result: Result = root.step()
+            while again and result is RUNNING and context.woken:
+                self._before_tick()
+                result = root.step()
+        except Exception as error:
+            raise self._tick_error(error) from error
+        if result is SUCCESS or result is FAILURE:
+            reset(root)
+        return NAME_OF_STATUS[result]
+
+    def _before_tick(self) -> None:
+        context = self._context
+        context.skipped.clear()
+        context.fire_due()
+        context.woken = False
+        if context.late_error is not None:
+            error, context.late_error = context.late_error, None
+            raise error
+
+    def _tick_error(self, error: Exception) -> TickError:
+        try:
+            self.halt()
+        except TickError:
+            pass  # the first error is the one to tell
+        return self._told(error)
+
+    def _told(self, error: Exception) -> TickError:
+        node = error.node if isinstance(error, StepError) else self.root
+        reason = error.reason if isinstance(error, StepError) else told(error)
+        tracked = next((one for one in self._tracked if one.node is node), self._tracked[0])
+        place = tracked.plan.element.place
+        return TickError(tracked.path, tracked.plan.type_name, place.file, place.line, reason)
+
+    def halt(self) -> None:
+        """Interrupt everything that is RUNNING; afterwards all nodes are IDLE.
+
+        As in BehaviorTree.CPP every node is then told once more, which runs its `_onHalted` script whether it was RUNNING or not.
+        Raises: TickError with the first error of a node, after all have been halted.
+        """
+        errors: list[Exception] = []
+        _attempt(self.root.halt, errors)
+        for tracked in self._tracked:
+            _attempt(tracked.node.halt, errors)
+        for tracked in self._tracked:
+            reset(tracked.node) if tracked.node.status is not RUNNING else setattr(tracked.node, "status", IDLE)
+        if errors:
+            raise self._told(errors[0]) from errors[0]
+
+    # -- asking
+
+    def statuses(self) -> dict[str, str]:
+        """What each node told its parent last, by path; "IDLE" if it was never ticked."""
+        skipped = self._skipped()
+        return {tracked.path: tracked.last(skipped) for tracked in self._tracked}
+
+    def node_states(self) -> list[NodeState]:
+        """Every node, depth first, with its status now. `since_s` is as fine as the calls: call it after each tick."""
+        skipped, now_s = self._skipped(), self._context.clock.now_s()
+        return [tracked.state(tracked.status(skipped), now_s) for tracked in self._tracked]
+
+    def active_leaf(self) -> str:
+        """The path of the deepest RUNNING node, the first one where several are; "" if none is."""
+        best: Tracked | None = None
+        for tracked in self._tracked:
+            is_open = any(child.status is RUNNING for child in tracked.node.children)
+            if tracked.node.status is RUNNING and not is_open and (best is None or tracked.plan.depth > best.plan.depth):
+                best = tracked
+        return best.path if best is not None else ""
+
+    def deciding_leaf(self) -> Tracked | None:
+        """The leaf whose FAILURE the mission's is: followed down from the root along the last child that failed."""
+        by_node = {id(tracked.node): tracked for tracked in self._tracked}
+        node, found = self.root, None
+        while node is not None:
+            found = by_node[id(node)]
+            failed = [child for child in node.children if (child.last if child.status is IDLE else child.status) is FAILURE]
+            node = failed[-1] if failed else None
+        return found if found is not None and not found.node.children else None
+
+    def deciding_reason(self) -> str:
+        """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if no leaf failed."""
+        decider = self.deciding_leaf()
+        if decider is None:
+            return ""
+        outputs: dict[str, Any] = getattr(decider.node, "last_outputs", {})
+        return str(outputs.get("reason") or decider.node.feedback_message or decider.plan.name)
+
+    def nodes(self) -> list[Tracked]:
+        """Every node with its plan, depth first; for dumps and checks."""
+        return list(self._tracked)
+
+    def _skipped(self) -> set[int]:
+        return {id(node) for node in self._context.skipped}
+
+    def _make_paths_unique(self) -> None:
+        """BehaviorTree.CPP lets two leaves have one path; here the later one carries its number."""
+        seen: set[str] = set()
+        for tracked in self._tracked:
+            if tracked.path in seen:
+                tracked.path = f"{tracked.path}::{tracked.plan.uid}"
+            seen.add(tracked.path)
+
+
+def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
+    try:
+        halt()
+    except Exception as error:
+        errors.append(error)
