@@ -17,6 +17,8 @@ from pluto_bt.skills.map_area import MapArea
 class Condition(Leaf):
     """Answers at once."""
 
+    KIND = "Condition"  # for `pluto nodes` and Groot2
+
     def ask(self, robot: Robot) -> tuple[bool, str]:
         """(is it so, a short text)."""
         raise NotImplementedError

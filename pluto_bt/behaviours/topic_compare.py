@@ -56,6 +56,8 @@ class TopicCompare(Condition):
 class WaitFor(TopicCompare):
     """RUNNING until the comparison holds; fails with `timeout` if it takes too long."""
 
+    KIND = "Action"
+
     INPUT_PORTS = {**COMPARE_INPUTS, "timeout_s": Port(float, False, "fails with `timeout` after so long", math.inf, unit="s", ge=0.0)}
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
