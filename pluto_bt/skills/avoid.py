@@ -58,7 +58,7 @@ class Avoid:
         motors = platform.limits
         self._latency_s = parameters.period_s + drive.period_s + motors.motor_latency_s + motors.motor_time_constant_s
         self._goto = Goto(self._outline, self._limits, parameters)
-        self.sight = Sight(platform, parameters)
+        self.sight = Sight(platform, parameters, self._outline)
         self.reset()
 
     def reset(self) -> None:

@@ -76,7 +76,7 @@ class Drive:
         self.limits = drive_limits(platform, parameters)
         self._outline = outline_of(platform.body.outline_m)
         self._latency_s = parameters.period_s + platform.limits.motor_latency_s + platform.limits.motor_time_constant_s
-        self._ring = SonarRing(platform.devices.sonar) if platform.devices.sonar else None
+        self._ring = SonarRing(platform.devices.sonar, self._outline) if platform.devices.sonar else None
         self._echoes: Array | None = None
         self._heard: SonarState | None = None
         self._latch = BumperLatch()

@@ -31,7 +31,8 @@ class Obstacles:
         """Nothing is known."""
         self._seen = np.zeros((0, 4))  # the newest scan
         self._kept = np.zeros((0, 4))  # what left the field of view
-        self._echoes = np.zeros((0, 4))
+        self._echoes = np.zeros((0, 4))  # those that the laser does not explain
+        self._explained = np.zeros((0, 4))  # those that say what the laser says better; they count where the laser does not
         self._last_ranges_m: Array | None = None
         self._last_pose: Planar = (0.0, 0.0, 0.0)
 
@@ -53,21 +54,20 @@ class Obstacles:
         self._seen = seen
         self._last_ranges_m, self._last_pose = (ranges if tilt_rad == 0.0 else None), laser
 
-    def add_echoes(self, points: Array, robot: Planar, now_s: float) -> None:
-        """Take sonar points (robot frame; x, y, margin)."""
-        fresh = np.empty((len(points), 4))
-        fresh[:, MARGIN] = points[:, 2]
-        fresh[:, SINCE] = now_s
-        _place(points[:, 0], points[:, 1], robot, fresh)
-        old = self._echoes[self._echoes[:, SINCE] > now_s - self.parameters.sonar_memory_s]
-        self._echoes = np.concatenate((old, fresh))
+    def add_echoes(self, unexplained: Array, explained: Array, robot: Planar, now_s: float) -> None:
+        """Take sonar points (robot frame; x, y, margin), also none; what is too old is forgotten."""
+        oldest_s = now_s - self.parameters.sonar_memory_s
+        self._echoes = _renewed(self._echoes, unexplained, robot, oldest_s, now_s)
+        self._explained = _renewed(self._explained, explained, robot, oldest_s, now_s)
 
-    def around(self, robot: Planar, with_laser: bool, with_sonar: bool) -> Array:
-        """(n, 3) x, y in the robot frame and margin, of all that is remembered nearer than the reach."""
+    def around(self, robot: Planar, with_laser: bool, with_sonar: bool, beyond_m: float = 0.0) -> Array:
+        """(n, 3) x, y in the robot frame and margin, of all that is remembered nearer than the reach and `beyond_m`."""
         parts = ([self._seen, self._kept] if with_laser else []) + ([self._echoes] if with_sonar else [])
+        if with_sonar and not with_laser:
+            parts.append(self._explained)
         if not parts:
             return np.zeros((0, 3))
-        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], self.parameters.reach_m)
+        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], self.parameters.reach_m + beyond_m)
 
     def _is_lone(self, ranges: Array) -> Mask:
         """Single short beams that the scan before does not confirm: dazzle, rain, a leaf."""
@@ -99,6 +99,18 @@ class Obstacles:
         last_rad = scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
         outside = (bearing < scan.angle_min_rad + FIELD_EDGE_RAD) | (bearing > last_rad - FIELD_EDGE_RAD)
         self._kept = old[outside & (old[:, SINCE] > now_s - p.memory_s) & (np.hypot(dx, dy) < p.reach_m + 1.0)]
+
+
+def _renewed(old: Array, points: Array, robot: Planar, oldest_s: float, now_s: float) -> Array:
+    """A memory of echoes without what is too old, and with `points` of now."""
+    old = old[old[:, SINCE] > oldest_s]
+    if not len(points):
+        return old
+    fresh = np.empty((len(points), 4))
+    fresh[:, MARGIN] = points[:, 2]
+    fresh[:, SINCE] = now_s
+    _place(points[:, 0], points[:, 1], robot, fresh)
+    return np.concatenate((old, fresh))
 
 
 def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:

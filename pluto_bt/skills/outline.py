@@ -34,6 +34,12 @@ class Outline:
         """How far a point is from the outline; negative inside. At corners the nearer of the two edges' lines counts, which is never too far."""
         return float(max(nx * x_m + ny * y_m - c for nx, ny, c in self.planes.tolist()))
 
+    def way_out_m(self, x_m: float, y_m: float, dx: float, dy: float) -> float:
+        """How far a ray from (x, y) along the unit vector (dx, dy) runs inside the outline; 0 if it starts outside."""
+        if self.distance_m(x_m, y_m) >= 0.0:
+            return 0.0
+        return float(min((c - nx * x_m - ny * y_m) / (nx * dx + ny * dy) for nx, ny, c in self.planes.tolist() if nx * dx + ny * dy > 1e-9))
+
 
 def outline_of(corners_m: Sequence[Point]) -> Outline:
     """The outline of a platform. A hollow outline counts as filled: the chain would rather keep too far than too near."""

@@ -13,11 +13,12 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.obstacles import Obstacles, Planar
-from pluto_bt.skills.outline import Array
+from pluto_bt.skills.outline import Array, Outline
 from pluto_bt.skills.sonar import SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
 SLACK_M = 0.2  # how much farther than an echo a laser point may be and still explain it
+BEYOND_M = 1.0  # what explains an echo may lie a little beyond the reach
 FROZEN_TRAVEL_M = 0.03  # a laser that sees exactly the same after so much driving is frozen
 FROZEN_TURN_RAD = 0.03
 
@@ -33,11 +34,11 @@ class ScanView(NamedTuple):
 class Sight:
     """Laser and sonar of one robot, as far as it has them."""
 
-    def __init__(self, platform: Platform, parameters: AvoidParameters) -> None:
+    def __init__(self, platform: Platform, parameters: AvoidParameters, outline: Outline) -> None:
         devices = platform.devices
         self.parameters = parameters
         self.laser = devices.laser
-        self.ring = SonarRing(devices.sonar) if devices.sonar else None
+        self.ring = SonarRing(devices.sonar, outline) if devices.sonar else None
         self._obstacles = Obstacles(parameters)
         self.forget()
 
@@ -114,11 +115,10 @@ class Sight:
         self._sonar_is_good = ranges.shape == (ring.count,) and bool(np.isfinite(ranges).all())
         if not self._sonar_is_good:
             return
-        ranges = np.maximum(ranges, ring.min_range_m)
         near = ranges < min(self.parameters.reach_m, ring.max_range_m)
-        if not near.any():
-            return
-        if self.laser is not None:
-            near &= unexplained(ring.axes, ranges, ring.half_cone_rad, self._obstacles.around(robot, True, False), SLACK_M)
-        if near.any():
-            self._obstacles.add_echoes(ring.place(ranges, near, self.parameters.margin_m), robot, now_s)
+        is_open = near
+        if self.laser is not None and near.any():
+            known = self._obstacles.around(robot, True, False, BEYOND_M)
+            is_open = near & unexplained(ring.axes, ranges, ring.half_cone_rad, known, SLACK_M)
+        margin_m = self.parameters.margin_m
+        self._obstacles.add_echoes(ring.place(ranges, is_open, margin_m), ring.place(ranges, near & ~is_open, margin_m), robot, now_s)

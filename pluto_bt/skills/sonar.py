@@ -16,6 +16,8 @@ from pluto_bt.skills.outline import Array, Outline
 Mask = NDArray[np.bool_]
 ECHO_SPREAD = 0.25  # the echo came from somewhere in the cone: it is put on the axis and at this share of the opening to each side
 
+DEAF_M = 0.02  # readings are not more exact than this
+
 
 class SonarRing:
     """The geometry of a ring, worked out once.
@@ -24,7 +26,7 @@ class SonarRing:
     and cover what lies beyond them, and an obstacle that is only just in a cone's edge, such as a door post, is not put before the robot.
     """
 
-    def __init__(self, sonar: Sonar) -> None:
+    def __init__(self, sonar: Sonar, outline: Outline) -> None:
         self.max_range_m = sonar.max_range_m
         self.min_range_m = sonar.min_range_m
         self.count = len(sonar.transducers)
@@ -32,25 +34,27 @@ class SonarRing:
         self._places = np.array([(t.x_m, t.y_m) for t in sonar.transducers]).repeat(3, axis=0)
         angles = [math.radians(t.theta_deg) + side * spread_rad for t in sonar.transducers for side in (-1.0, 0.0, 1.0)]
         self._ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        self._leaves_m = np.array([outline.way_out_m(*place, *way) for place, way in zip(self._places.tolist(), self._ways.tolist(), strict=True)])
         self.axes = np.array([(t.x_m, t.y_m, math.radians(t.theta_deg)) for t in sonar.transducers])
         self.half_cone_rad = math.radians(sonar.cone_deg) / 2.0
         self.hears_behind = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) > math.radians(135.0) for t in sonar.transducers)
         self.hears_ahead = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) < math.radians(45.0) for t in sonar.transducers)
 
     def points(self, ranges_m: Sequence[float], within_m: float, margin_m: float) -> Array | None:
-        """(n, 3) x, y, margin of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number).
-
-        A reading at or below the least range means "at least that near".
-        """
+        """(n, 3) x, y, margin of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number)."""
         ranges = np.array(ranges_m)
         if ranges.shape != (self.count,) or not np.isfinite(ranges).all():
             return None
-        return self.place(np.maximum(ranges, self.min_range_m), ranges < min(within_m, self.max_range_m), margin_m)
+        return self.place(ranges, ranges < min(within_m, self.max_range_m), margin_m)
 
     def place(self, ranges_m: Array, wanted: Mask, margin_m: float) -> Array:
-        """The points of the transducers in the mask `wanted`."""
+        """The points of the transducers in the mask `wanted`.
+
+        A transducer is deaf below its least range and reports that range for everything nearer: such an echo is put on the outline.
+        """
         mask = wanted.repeat(3)
-        echoes = ranges_m.repeat(3)[mask]
+        echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(3)[mask]
+        echoes = np.maximum(echoes, self._leaves_m[mask])
         points = np.full((len(echoes), 3), margin_m)
         points[:, :2] = self._places[mask] + self._ways[mask] * echoes[:, None]
         return points

@@ -25,7 +25,7 @@ ROOM_M = 0.35  # a heading with so much room on both sides could not have more
 LOOK_M = 1.5  # how far ahead room at the sides counts
 PUSH = 0.35  # how strongly obstacles push against a goal of force 1
 # the weights of a heading, in radians of detour that each is worth
-BLOCKED_RAD, NARROW_RAD, CHANGE_RAD_PER_RAD, OTHER_SIDE_RAD = 3.0, 0.7, 0.15, 0.8
+BLOCKED_RAD, NARROW_RAD, CHANGE_RAD_PER_RAD, OTHER_SIDE_RAD = 3.0, 0.7, 0.2, 1.6
 SIDE_TAKEN_RAD = math.radians(15.0)
 
 _HEADINGS = -math.pi + STEP_RAD * np.arange(HEADINGS)
