@@ -12,7 +12,7 @@ from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.gateway import inquiries, replies, requests
 from pluto_bt.gateway.leases import Held, Leases
 from pluto_bt.gateway.outcomes import Outcomes
-from pluto_bt.gateway.port import Refused, RobotPort
+from pluto_bt.gateway.port import RefusedError, RobotPort
 from pluto_bt.gateway.replies import AnyReply, Error, LeaseState, Ok, with_id
 from pluto_bt.gateway.runs import Runs
 from pluto_bt.gateway.wire import Answer, Ask
@@ -72,7 +72,7 @@ class Desk:
             self._lost(lost, "ran out")
         try:
             reply, later = self._answer(ask, key, stops, now_s)
-        except Refused as refusal:
+        except RefusedError as refusal:
             reply, later = Error(code=refusal.code, text=refusal.text), []
         except Exception as error:  # a fault of the robot's side must not take the link down
             reply, later = Error(code="internal", text=f"{type(error).__name__}: {error}"), []
@@ -100,7 +100,7 @@ class Desk:
 
     # answers -----------------------------------------------------------------------------------------------------
     def _answer(self, ask: Ask, key: str, stops: int, now_s: float) -> tuple[AnyReply, Sequence[AnyReply]]:
-        """The direct reply and what follows it at once. Raises: Refused."""
+        """The direct reply and what follows it at once. Raises: RefusedError."""
         request = ask.request
         match request:
             case requests.Command() | requests.Run():
@@ -130,7 +130,7 @@ class Desk:
             case requests.Cancel():
                 self._cancel(request.run, key, now_s, _source(ask))
             case _:
-                raise Refused("invalid", f"the executive does not answer {type(request).__name__}")
+                raise RefusedError("invalid", f"the executive does not answer {type(request).__name__}")
         return Ok()
 
     def _act(
@@ -144,7 +144,7 @@ class Desk:
         self._require_movable(stops)
         state = self._port.mission_state().state
         if state in ("running", "stopping"):
-            raise Refused("wrong-state", f'a mission is {state}; pause it first: <mission op="pause"/>')
+            raise RefusedError("wrong-state", f'a mission is {state}; pause it first: <mission op="pause"/>')
         reply: AnyReply
         outcome = self._outcomes.begin(ask.session, request)
         try:
@@ -163,14 +163,14 @@ class Desk:
     def _require_lease(self, key: str, now_s: float) -> None:
         if not self._leases.holds(key, now_s):
             held = self._leases.held
-            raise Refused("no-lease", f'the lease is held by {held.name if held else "nobody"}; acquire it first: <lease op="acquire"/>')
+            raise RefusedError("no-lease", f'the lease is held by {held.name if held else "nobody"}; acquire it first: <lease op="acquire"/>')
 
     def _require_movable(self, stops: int) -> None:
         reason = self._port.estop_reason()
         if reason is not None:
-            raise Refused("estopped", f'the robot is latched ({reason}); the holder of the lease sends <release what="estop"/>')
+            raise RefusedError("estopped", f'the robot is latched ({reason}); the holder of the lease sends <release what="estop"/>')
         if stops != self.stops:
-            raise Refused("wrong-state", "a stop overtook this request; send it again if it is still meant")
+            raise RefusedError("wrong-state", "a stop overtook this request; send it again if it is still meant")
 
     def _stop_again(self, stops: int, ask: Ask) -> None:
         """A stop that came while we acted may have been undone by what we did: say it again."""
@@ -191,7 +191,7 @@ class Desk:
             case "release":
                 held = self._leases.end(key)
                 if held is None:
-                    raise Refused("no-lease", "expected the holder of the lease")
+                    raise RefusedError("no-lease", "expected the holder of the lease")
         held = self._leases.held
         if held is None:
             return LeaseState(holder="", mine=False, epoch=0, expires_s=0.0)
@@ -212,7 +212,7 @@ class Desk:
     def _cancel(self, run: str, key: str, now_s: float, source: str) -> None:
         active = self._runs.active
         if active is None or active.run != run:
-            raise Refused("wrong-state", f'run "{run}" is not going on; ' + (f'"{active.run}" is' if active else "none is"))
+            raise RefusedError("wrong-state", f'run "{run}" is not going on; ' + (f'"{active.run}" is' if active else "none is"))
         if active.key != key:
             self._require_lease(key, now_s)
         self._runs.finish("cancelled", "cancelled", f"{source} cancelled the run")
@@ -223,7 +223,7 @@ class Desk:
             self._require_movable(stops)
             held = self._leases.held
             if held is not None and held.key != key:
-                raise Refused("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
+                raise RefusedError("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
         if request.op == "list":
             return replies.Mission(state=port.mission_state(), names=tuple(port.mission_names()))
         if request.op != "state":

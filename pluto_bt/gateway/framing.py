@@ -102,7 +102,8 @@ class Framer:
         elif head[1:2] == b"?":
             self._declaration(head)
         elif head[1:2] != b"!":
-            raise self._error("bad-encoding" if head[1:2] == b"\0" else "not-well-formed", f"expected the name of an element after '<', found {head[1:2]!r}")
+            code = "bad-encoding" if head[1:2] == b"\0" else "not-well-formed"
+            raise self._error(code, f"expected the name of an element after '<', found {head[1:2]!r}")
         elif len(head) > 2:
             code = "not-well-formed" if head[2:3] in b"-[" else "restricted-xml"
             raise self._error(code, "expected an element; comments and CDATA stand inside messages only, declarations (DOCTYPE, ENTITY) nowhere")
@@ -111,7 +112,8 @@ class Framer:
         """One XML declaration may open the stream; it is cut off."""
         could_be = b"<?xml".startswith(head[:5]) if len(head) <= 5 else head[:5] == b"<?xml"
         if self._begun or not could_be or (len(head) == 6 and head[5:] not in b" \t\r\n"):
-            raise self._error("restricted-xml", "expected an element, found a processing instruction (or an XML declaration that is not the first thing sent)")
+            text = "expected an element, found a processing instruction (or an XML declaration that is not the first thing sent)"
+            raise self._error("restricted-xml", text)
         if not head.endswith(b"?>"):
             if len(head) > _DECLARATION_BYTES:
                 raise self._error("not-well-formed", "expected '?>' at the end of the XML declaration")
@@ -142,7 +144,12 @@ class Framer:
         """A message begins: give a fresh parser its private root and the bytes that waited."""
         # huge_tree lifts libxml2's own depth limit, which is one short of ours; all sizes are bounded here.
         self._parser = etree.XMLPullParser(
-            events=("start", "end", "pi"), resolve_entities="internal", no_network=True, load_dtd=False, huge_tree=True, encoding="utf-8"
+            events=("start", "end", "pi"),
+            resolve_entities="internal",  # type: ignore[arg-type]  # the stubs know lxml 4 only
+            no_network=True,
+            load_dtd=False,
+            huge_tree=True,
+            encoding="utf-8",
         )
         self._parser.feed(b"<private>\n")
         for _ in self._parser.read_events():
@@ -195,8 +202,9 @@ class Framer:
 
     def _syntax(self, error: etree.XMLSyntaxError) -> FramingError:
         """libxml2's complaint, under our code and at the stream's position."""
-        code = _CODES.get(error.code, "not-well-formed")
-        if error.code in _ENTITY_CODES or (code == "not-well-formed" and _MARKUP_DECLARATION.search(self._raw)):
+        number = int(getattr(error, "code", 0))
+        code = _CODES.get(number, "not-well-formed")
+        if number in _ENTITY_CODES or (code == "not-well-formed" and _MARKUP_DECLARATION.search(self._raw)):
             code = "restricted-xml"
         text = re.sub(r", line \d+, column \d+.*", "", (error.msg or "not well-formed").strip(), flags=re.DOTALL).strip()
         text = re.sub(r" line \d+", "", text)

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from pluto_bt.gateway.describe import describe
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.newest import Newest
-from pluto_bt.gateway.port import Refused
+from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.replies import Description
 from pluto_bt.gateway.requests import AnyRequest, Describe
 from pluto_bt.gateway.session import Session
@@ -92,13 +92,13 @@ class Hub:
         self._send(Ask(client, session, name, request))
 
     def describe(self, request: Describe) -> Description:
-        """What exists. Raises: Refused."""
+        """What exists. Raises: RefusedError."""
         return describe(request, self._topics)
 
     def require_topic(self, pattern: str) -> None:
-        """Raises: Refused `unknown-topic` if the pattern means no topic of this run."""
+        """Raises: RefusedError `unknown-topic` if the pattern means no topic of this run."""
         if not any(matches(pattern, topic) for topic in self._topics):
-            raise Refused("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self._topics) or "<describe/> lists all"}')
+            raise RefusedError("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self._topics) or "<describe/> lists all"}')
 
     def subscribed(self, session: Session, now_s: float) -> None:
         """Watch what the session wants now, and give it what is already here."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pluto_bt.gateway.port import OnLoss, Refused
+from pluto_bt.gateway.port import OnLoss, RefusedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +36,11 @@ class Leases:
         return self._held is not None and self._held.key == key and now_s < self._held.until_s
 
     def acquire(self, key: str, name: str, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held:
-        """Take a free lease; the holder renews his by it. Call `expire` first. Raises: Refused `lease-held`."""
+        """Take a free lease; the holder renews his by it. Call `expire` first. Raises: RefusedError `lease-held`."""
         held = self._held
         if held is not None and held.key != key:
-            raise Refused("lease-held", f"the lease is held by {held.name} for another {held.until_s - now_s:.1f} s; wait, or op=\"take\" takes it away")
+            left_s = held.until_s - now_s
+            raise RefusedError("lease-held", f'the lease is held by {held.name} for another {left_s:.1f} s; wait, or op="take" takes it away')
         return self._give(key, name, held.epoch if held else self._next_epoch(), ttl_s, on_loss, now_s)
 
     def take(self, key: str, name: str, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held | None:
@@ -50,10 +51,10 @@ class Leases:
         return lost
 
     def renew(self, key: str, now_s: float) -> Held:
-        """Hold on for another ttl. Raises: Refused `no-lease`."""
+        """Hold on for another ttl. Raises: RefusedError `no-lease`."""
         held = self._held
         if held is None or not self.holds(key, now_s):
-            raise Refused("no-lease", f"expected the holder of the lease; {held.name if held else 'nobody'} holds it; acquire it first")
+            raise RefusedError("no-lease", f"expected the holder of the lease; {held.name if held else 'nobody'} holds it; acquire it first")
         return self._give(key, held.name, held.epoch, held.ttl_s, held.on_loss, now_s)
 
     def end(self, key: str) -> Held | None:

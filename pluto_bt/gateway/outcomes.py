@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pluto_bt.gateway.port import Refused
+from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.replies import AnyReply, Progress
 from pluto_bt.gateway.requests import AnyRequest
 
@@ -46,12 +46,12 @@ class Outcomes:
         self._sessions: dict[str, dict[str, Outcome]] = {}
 
     def find(self, session: str, request: AnyRequest) -> Outcome | None:
-        """The stored outcome of the same request. Raises: Refused `conflict` if the id was used for another one."""
+        """The stored outcome of the same request. Raises: RefusedError `conflict` if the id was used for another one."""
         if not session or not request.id:
             return None
         known = self._sessions.get(session, {}).get(request.id)
         if known is not None and known.request != request:
-            raise Refused("conflict", f'id "{request.id}" was used in this session for another request; expected a new id, or the same content')
+            raise RefusedError("conflict", f'id "{request.id}" was used in this session for another request; expected a new id, or the same content')
         return known
 
     def begin(self, session: str, request: AnyRequest) -> Outcome:

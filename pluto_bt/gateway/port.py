@@ -13,7 +13,7 @@ from pluto_bt.source import PlutoError
 OnLoss = Literal["stop", "pause", "continue"]
 
 
-class Refused(PlutoError):
+class RefusedError(PlutoError):
     """A request that is understood and not granted. `code` is one of the codes of PROTOCOL.md that are not fatal."""
 
     def __init__(self, code: str, text: str) -> None:
@@ -43,7 +43,7 @@ class RobotPort(Protocol):
     """The robot as the gateway sees it.
 
     `stop` and `estop` are called from the link's own thread, at any moment: they must be thread-safe and return at once. All other
-    methods are called inside `GatewayLink.step`. `source` names the client for logs. Methods that can say no raise `Refused`.
+    methods are called inside `GatewayLink.step`. `source` names the client for logs. Methods that can say no raise `RefusedError`.
     """
 
     @property
@@ -75,10 +75,10 @@ class RobotPort(Protocol):
         """Why the robot is latched, None if it is not."""
 
     def post_command(self, target: str, command: ActuatorState, source: str) -> None:
-        """Give a command to a link of the chain (`motion`, `avoidance`, `drive`) or to the `wrist`. Raises: Refused."""
+        """Give a command to a link of the chain (`motion`, `avoidance`, `drive`) or to the `wrist`. Raises: RefusedError."""
 
     def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
-        """Start one node or library tree; the run's id. Deadline 0 = none. A run that goes on is preempted by it. Raises: Refused."""
+        """Start one node or library tree; the run's id. Deadline 0 = none. A run that goes on is preempted by it. Raises: RefusedError."""
 
     def run_state(self, run: str) -> RunState:
         """How a run that `run_node` started stands."""
@@ -93,7 +93,7 @@ class RobotPort(Protocol):
         """Missions that can be loaded by name."""
 
     def mission(self, op: str, name: str, text: str, source: str) -> None:
-        """Do `load`, `check`, `start`, `pause`, `resume`, `abort` or `fetch`. Raises: Refused."""
+        """Do `load`, `check`, `start`, `pause`, `resume`, `abort` or `fetch`. Raises: RefusedError."""
 
     def tree_text(self, format: str) -> str:
         """The tree drawn as `ascii` or `dot`; "" if there is none."""
@@ -102,4 +102,4 @@ class RobotPort(Protocol):
         """Every module of the run."""
 
     def module(self, name: str, op: str, source: str) -> None:
-        """Start or stop a module. Raises: Refused."""
+        """Start or stop a module. Raises: RefusedError."""

@@ -51,7 +51,7 @@ class Ok(Reply, frozen=True, kw_only=True):
 
 
 class Error(Reply, frozen=True, kw_only=True):
-    """Refused: `text` names what was expected and found."""
+    """RefusedError: `text` names what was expected and found."""
 
     code: str
     text: str
@@ -187,7 +187,8 @@ def _tree(reply: Tree) -> str:
 
 def _event(reply: LogLine) -> str:
     event = reply.event
-    shown: dict[str, Attribute] = {"level": event.level, "code": event.code, "source": event.source, "seq": reply.seq, "time": _seconds(event.stamp_s)}
+    shown: dict[str, Attribute] = {"level": event.level, "code": event.code, "source": event.source, "seq": reply.seq}
+    shown["time"] = _seconds(event.stamp_s)
     return _with_id(reply, "event", shown, escape(event.text))
 
 

@@ -1,6 +1,6 @@
 """What a client may say: one struct an element, read from the XML with every attribute checked.
 
-The structs are also what travels to the executive. A request that is well-formed but wrong raises `Refused`; the stream goes on.
+The structs are also what travels to the executive. A request that is well-formed but wrong raises `RefusedError`; the stream goes on.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import msgspec
 from msgspec import Meta
 
 from pluto_bt.gateway.framing import Message
-from pluto_bt.gateway.port import Refused
+from pluto_bt.gateway.port import RefusedError
 from pluto_bt.source import did_you_mean
 
 Word = Annotated[str, Meta(max_length=128)]
@@ -95,7 +95,7 @@ class Run(Request, frozen=True, kw_only=True):
 
     node: Annotated[str, Meta(min_length=1)]
     deadline_s: Seconds = 0.0
-    ports: dict[str, str] = {}  # noqa: RUF012  # msgspec copies the default for each instance
+    ports: dict[str, str] = {}  # msgspec copies the default for each instance
 
 
 class Cancel(Request, frozen=True, kw_only=True):
@@ -172,11 +172,12 @@ _INLINE = re.compile(rb"<mission\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>(.*)</mission\
 
 
 def parse(message: Message) -> AnyRequest:
-    """The request that a message makes. Raises: Refused (`unknown-element`, `invalid`, `bad-value`)."""
+    """The request that a message makes. Raises: RefusedError (`unknown-element`, `invalid`, `bad-value`)."""
     tag = message.element.tag
     kind = ELEMENTS.get(tag)
     if kind is None:
-        raise Refused("unknown-element", f"unknown element <{tag}>; expected one of: {', '.join(sorted(ELEMENTS))}; {did_you_mean(tag, ELEMENTS)}".rstrip("; "))
+        hint = did_you_mean(tag, ELEMENTS)
+        raise RefusedError("unknown-element", f"unknown element <{tag}>; expected one of: {', '.join(sorted(ELEMENTS))}{'; ' + hint if hint else ''}")
     given: dict[str, Any] = dict(message.element.attrib)
     known = [name for name in kind.__struct_fields__ if name not in _FROM_CONTENT.get(tag, ())]
     if kind is Run:
@@ -185,12 +186,13 @@ def parse(message: Message) -> AnyRequest:
         for name in given:
             if name not in known:
                 hint = did_you_mean(name, known)
-                raise Refused("invalid", f'<{tag}>: unknown attribute "{name}"; expected one of: {", ".join(known)}{"; " + hint if hint else ""}')
+                text = f'<{tag}>: unknown attribute "{name}"; expected one of: {", ".join(known)}{"; " + hint if hint else ""}'
+                raise RefusedError("invalid", text)
     given |= _content(message)
     try:
         return msgspec.convert(given, kind, strict=False)  # type: ignore[no-any-return]
     except msgspec.ValidationError as error:
-        raise Refused("invalid", _explain(tag, given, known, str(error))) from None
+        raise RefusedError("invalid", _explain(tag, given, known, str(error))) from None
 
 
 def _explain(tag: str, given: dict[str, Any], known: list[str], complaint: str) -> str:
@@ -218,12 +220,13 @@ def _content(message: Message) -> dict[str, Any]:
     children = [child for child in message.element if isinstance(child.tag, str)]
     stray = "".join(message.element.itertext()) if not children else (message.element.text or "") + "".join(child.tail or "" for child in children)
     if stray.strip():
-        raise Refused("invalid", f"<{tag}>: expected no text, found {stray.strip()[:40]!r}")
+        raise RefusedError("invalid", f"<{tag}>: expected no text, found {stray.strip()[:40]!r}")
     allowed = _FROM_CONTENT["command"] if tag == "command" else ()
     found: dict[str, Any] = {}
     for child in children:
         if child.tag not in allowed or child.tag in found:
-            raise Refused("invalid", f"<{tag}>: expected {'each of ' + ', '.join(allowed) + ' at most once' if allowed else 'no elements'}, found <{child.tag}>")
+            expected = f"each of {', '.join(allowed)} at most once" if allowed else "no elements"
+            raise RefusedError("invalid", f"<{tag}>: expected {expected}, found <{child.tag}>")
         found[child.tag] = _vector(tag, child)
     return found
 
@@ -235,10 +238,10 @@ def _vector(tag: str, child: Any) -> Vector:
     try:
         values = tuple(float(word) for word in words)
     except ValueError:
-        raise Refused("bad-value", f"{where}: expected numbers separated by spaces, found {' '.join(words)[:40]!r}") from None
+        raise RefusedError("bad-value", f"{where}: expected numbers separated by spaces, found {' '.join(words)[:40]!r}") from None
     if not all(map(math.isfinite, values)):
-        raise Refused("bad-value", f"{where}: expected finite numbers, found {' '.join(words)[:40]!r}")
+        raise RefusedError("bad-value", f"{where}: expected finite numbers, found {' '.join(words)[:40]!r}")
     expected = _COUNTS.get(child.tag, 1)
     if len(values) != expected and not (child.tag == "force" and 1 <= len(values) <= 8):
-        raise Refused("bad-value", f"{where}: expected {expected} numbers, found {len(values)}")
+        raise RefusedError("bad-value", f"{where}: expected {expected} numbers, found {len(values)}")
     return values

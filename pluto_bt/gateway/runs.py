@@ -42,7 +42,7 @@ class Runs:
         return self._active
 
     def start(self, key: str, request: Run, outcome: Outcome, source: str) -> str:
-        """Begin a run; the robot preempts the one before, unless he refuses the new one. Raises: Refused."""
+        """Begin a run; the robot preempts the one before, unless he refuses the new one. Raises: RefusedError."""
         run = self._port.run_node(request.node, request.ports, request.deadline_s, source)
         if self._active is not None:
             self._over(self._active, RunState("preempted", "preempted", f"{source} began another run"))

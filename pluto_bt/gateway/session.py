@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from pluto_bt.gateway import requests
 from pluto_bt.gateway.framing import Message
 from pluto_bt.gateway.newest import Newest
-from pluto_bt.gateway.port import Refused
+from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
 from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, encode, with_id
 from pluto_bt.gateway.requests import AnyRequest, Estop, Stop
@@ -70,7 +70,7 @@ class Session:
             request = requests.parse(message)
             if self._may_speak(request):
                 self._do(request, now_s)
-        except Refused as refusal:
+        except RefusedError as refusal:
             self.say(Error(id=id, code=refusal.code, text=refusal.text, line=message.line, column=message.column))
 
     def _may_speak(self, request: AnyRequest) -> bool:
@@ -104,7 +104,7 @@ class Session:
                 hub.subscribed(self, now_s)
             case requests.Unsubscribe():
                 if not self.subscriptions.remove(request.topic):
-                    raise Refused("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
+                    raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
                 self.say(Ok(id=request.id))
                 hub.watch()
             case requests.Bye():
@@ -114,7 +114,7 @@ class Session:
 
     def _hello(self, request: requests.SayHello, now_s: float) -> None:
         if self._greeted:
-            raise Refused("wrong-state", "hello is said once a connection; connect anew for another name or session")
+            raise RefusedError("wrong-state", "hello is said once a connection; connect anew for another name or session")
         if request.version.split(".")[0] != "1":
             self.fail("unsupported-version", f'expected version 1.0, found "{request.version}"', request.id)
             return
@@ -135,7 +135,7 @@ class Session:
 
     def _ask(self, request: AnyRequest) -> None:
         if self._outstanding >= self._limits.outstanding:
-            raise Refused("busy", f"{self._outstanding} requests of this client wait for the executive; wait for their replies")
+            raise RefusedError("busy", f"{self._outstanding} requests of this client wait for the executive; wait for their replies")
         self._outstanding += 1
         self._hub.ask(self.client, self._session, self._name, request)
 
