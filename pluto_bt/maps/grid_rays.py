@@ -70,12 +70,12 @@ def grid_entry(rows: int, columns: int, x: float, y: float, dx: float, dy: float
 
 @inline_kernel
 def entry_time(at: float, size: int, per: float) -> float:
-    """When the ray is within [0, size) on one axis: at once, at its near end, or `FAR` = never."""
+    """When the ray comes into [0, size) on one axis: at its near end; `FAR` = never; -1 = it is inside already."""
     if at < 0.0:
         return -at * per if 0.0 < per < FAR else FAR
     if at >= size:
         return (size - at) * per if per < 0.0 else FAR
-    return 0.0
+    return -1.0
 
 
 @inline_kernel
