@@ -18,7 +18,9 @@ class Regions:
         self._n = len(polygons)
         starts = [np.asarray(polygon, dtype=np.float64) for polygon in polygons]
         self._start = np.vstack(starts) if starts else np.zeros((0, 2))
-        self._edge = (np.vstack([np.roll(points, -1, axis=0) for points in starts]) if starts else np.zeros((0, 2))) - self._start
+        ends = np.vstack([np.roll(points, -1, axis=0) for points in starts]) if starts else np.zeros((0, 2))
+        self._end_y = ends[:, 1]
+        self._edge = ends - self._start
         self._owner = np.repeat(np.arange(self._n), [len(points) for points in starts])
         self._length2 = np.maximum((self._edge**2).sum(axis=1), 1e-300)
         self._inside: tuple[int, ...] = ()
@@ -45,7 +47,7 @@ class Regions:
         to_point = np.array([x_m, y_m]) - self._start
         share = np.clip((to_point * self._edge).sum(axis=1) / self._length2, 0.0, 1.0)
         gap = to_point - share[:, None] * self._edge
-        above, end_above = to_point[:, 1] < 0.0, to_point[:, 1] < self._edge[:, 1]
+        above, end_above = self._start[:, 1] > y_m, self._end_y > y_m  # absolute: both edges of a corner must judge it alike
         crosses = above != end_above
         left_of = np.where(crosses, to_point[:, 0] * self._edge[:, 1] < to_point[:, 1] * self._edge[:, 0], False)
         hits = crosses & (left_of == (self._edge[:, 1] > 0.0))
