@@ -106,11 +106,16 @@ class Travel:
         share = self._free_share(before, twist) if gap_before > TOUCH_M else 0.0
         beyond = self._around.contacts(self._outline.at(self._body.pose))
         self._body.hold(before, share)
+        if any(contact.owner not in self._touching for contact in beyond):
+            closing_mps = self._closing_mps(twist)
+            for contact in beyond:
+                self._note(contact, closing_mps)
+
+    def _closing_mps(self, twist: tuple[float, float]) -> float:
+        """Own speed towards what stands in contact: how fast the gap opens when the arc is run backwards."""
         backed_off = motion.along_arc(self._body.pose, *twist, -TICK_S)
         fastest_mps = abs(twist[0]) + abs(twist[1]) * self._outline.radius_m
-        closing_mps = min((self._gap_m(backed_off) - self._gap_m(self._body.pose)) / TICK_S, fastest_mps)  # a hole's gap is a cliff
-        for contact in beyond:
-            self._note(contact, closing_mps)
+        return min((self._gap_m(backed_off) - self._gap_m(self._body.pose)) / TICK_S, fastest_mps)  # at a hole the gap jumps
 
     def _stop_if_deeper(self, before: Pose, twist: tuple[float, float]) -> None:
         """Something lies over the robot already: it may move away from that, but neither further into it nor into anything else."""
