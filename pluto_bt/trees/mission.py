@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from typing import Any
 
 from pluto_bt.trees.board_view import BoardView
-from pluto_bt.trees.controls import ReactiveSequence, Sequence, TryCatch
-from pluto_bt.trees.decorators import ForceFailure, Inverter
+from pluto_bt.trees.controls.reactive import ReactiveSequence
+from pluto_bt.trees.controls.sequence import Sequence
+from pluto_bt.trees.controls.try_catch import TryCatch
+from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.errors import StepError, TickError
 from pluto_bt.trees.engine.leaf import told
@@ -71,10 +74,8 @@ class Mission:
             raise error
 
     def _tick_error(self, error: Exception) -> TickError:
-        try:
+        with contextlib.suppress(TickError):  # the first error is the one to tell
             self.halt()
-        except TickError:
-            pass  # the first error is the one to tell
         return self._told(error)
 
     def _told(self, error: Exception) -> TickError:

@@ -150,7 +150,7 @@ def _foreign(model: Any) -> NodeType:
 
     ports = {port.name: PortModel(port.name, port.direction, default=port.default, required=False) for port in model.ports.values()}
     children = {"Control": (1, None), "Decorator": (1, 1)}.get(model.tag, (0, 0))
-    return NodeType(model.name, model.tag, ports, None, children)  # type: ignore[arg-type]
+    return NodeType(model.name, model.tag, ports, None, children)
 
 
 def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
