@@ -1,0 +1,64 @@
+"""Inboxes: how commands travel. A link of the chain takes the newest command of its owner; stop beats all.
+
+The owner of a link's inbox is the upper link while that one's thread runs, and the holder of the lease once it is stopped
+(DESIGN.md, section 9). Others get `wrong-state`.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import NamedTuple
+
+from pluto_bt.blackboard.messages import ActuatorState
+
+WRONG_STATE = "wrong-state"
+
+
+class Letter(NamedTuple):
+    """A command as it was posted."""
+
+    source: str
+    command: ActuatorState
+    is_stop: bool
+
+
+class Inbox:
+    """The place where one link finds its commands. Newest wins; a stop is never overtaken by a command posted before it is taken."""
+
+    def __init__(self, name: str, is_owner: Callable[[str], bool] = lambda source: True) -> None:
+        self.name = name
+        self.is_owner = is_owner
+        self._wakers: tuple[Callable[[], None], ...] = ()
+        self._letter: Letter | None = None
+        self._lock = threading.Lock()
+
+    def post(self, source: str, command: ActuatorState) -> str:
+        """Leave a command. Returns "" or the code of the refusal (`wrong-state`: `source` does not own this inbox now)."""
+        if not self.is_owner(source):
+            return WRONG_STATE
+        with self._lock:
+            if self._letter is None or not self._letter.is_stop:
+                self._letter = Letter(source, command, False)
+        self._wake()
+        return ""
+
+    def stop(self, source: str, stamp_s: float) -> None:
+        """Zero velocity at once, whoever asks; a command that waits is dropped."""
+        with self._lock:
+            self._letter = Letter(source, ActuatorState(stamp_s), True)
+        self._wake()
+
+    def take(self) -> Letter | None:
+        """The newest letter, once."""
+        with self._lock:
+            letter, self._letter = self._letter, None
+        return letter
+
+    def on_post(self, wake: Callable[[], None]) -> None:
+        """Call `wake` after each letter, in the sender's thread; it must be quick and must not raise."""
+        self._wakers = (*self._wakers, wake)
+
+    def _wake(self) -> None:
+        for wake in self._wakers:
+            wake()
