@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
+from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.board_view import BoardView
 from pluto_bt.trees.controls.reactive import ReactiveSequence
 from pluto_bt.trees.controls.sequence import Sequence
 from pluto_bt.trees.controls.try_catch import TryCatch
 from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.engine.errors import StepError, TickError
+from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import NodeState, Tracked
+
+
+LETTERS: Final = {"IDLE": "I", "RUNNING": "R", "SUCCESS": "S", "FAILURE": "F", "SKIPPED": "K"}
 
 
 class Mission:
@@ -141,6 +145,29 @@ class Mission:
             return ""
         outputs: dict[str, Any] = getattr(decider.node, "last_outputs", {})
         return str(outputs.get("reason") or decider.node.feedback_message or decider.plan.name)
+
+    def deciding_text(self) -> str:
+        """The same in words: which node it was and what it said; "" if the root did not fail."""
+        decider = self.deciding_node()
+        if decider is None:
+            return ""
+        said = decider.node.feedback_message
+        return f"{decider.path} ({decider.plan.type_name}) failed{': ' + said if said else ''}"
+
+    def outputs(self) -> dict[str, str]:
+        """What the root wrote to its output ports, as text; only a mission that is a single leaf has any."""
+        written: dict[str, Any] = getattr(self.root, "last_outputs", {})
+        return {name: text_of(value) for name, value in written.items()}
+
+    def current_leaf(self) -> str:
+        """The path of the leaf that was begun last: while a tick does not come back, the one that hangs. Any thread may ask."""
+        current = self._context.current
+        return next((tracked.path for tracked in self._tracked if tracked.node is current), "")
+
+    def status_line(self) -> str:
+        """One letter a node, depth first: its status (I R S F), or K if it was skipped in the last tick."""
+        skipped = self._skipped()
+        return "".join(LETTERS[tracked.status(skipped)] for tracked in self._tracked)
 
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""

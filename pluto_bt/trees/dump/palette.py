@@ -7,7 +7,7 @@ from xml.sax.saxutils import escape
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.engine.status import NAME_OF_STATUS
-from pluto_bt.trees.loader.registry import NodeType
+from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.ports import PortModel
 
 TAGS = {"in": "input_port", "out": "output_port", "inout": "inout_port"}
@@ -15,10 +15,10 @@ TYPE_NAMES = {"string": "std::string", "script": "std::string", "any": "BT::AnyT
 ARROWS = {"in": "→", "out": "←", "inout": "↔"}
 
 
-def nodes_table(types: Mapping[str, NodeType]) -> str:
-    """One block a node: name, kind, what it does, and one line a port."""
+def nodes_table(types: Mapping[str, NodeType] | None = None) -> str:
+    """One block a node: name, kind, what it does, and one line a port; of all that is registered if no types are given."""
     lines: list[str] = []
-    for node_type in _sorted(types.values()):
+    for node_type in _sorted((types or node_types()).values()):
         lines.append(f"{node_type.name:<26} {node_type.kind:<10} {node_type.description}".rstrip())
         for port in node_type.ports.values():
             facts = [port.form, f"default {default_text(port)}" if port.default is not None else "", "optional" if _optional(port) else ""]
@@ -27,10 +27,10 @@ def nodes_table(types: Mapping[str, NodeType]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def nodes_xml(types: Mapping[str, NodeType], *, builtin: bool = False) -> str:
+def nodes_xml(types: Mapping[str, NodeType] | None = None, *, builtin: bool = False) -> str:
     """A file with a TreeNodesModel that Groot2 imports as a palette; Groot2 knows the built-in nodes itself."""
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<root BTCPP_format="4">', "  <TreeNodesModel>"]
-    for node_type in _sorted(types.values()):
+    for node_type in _sorted((types or node_types()).values()):
         if builtin or not node_type.builtin:
             lines += model_lines(node_type, "    ")
     return "\n".join([*lines, "  </TreeNodesModel>", "</root>"]) + "\n"

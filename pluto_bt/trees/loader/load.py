@@ -9,7 +9,7 @@ from typing import Any
 
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
 from pluto_bt.trees.engine.context import Context, MissionClock
-from pluto_bt.trees.engine.errors import MissionError
+from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place

@@ -1,4 +1,4 @@
-"""`draw`: one function for all formats."""
+"""`dump`: one function for all formats."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ FORMATS: Final = ("ascii", "unicode", "dot", "svg", "xhtml", "xml")
 _PICTURES: Final[dict[str, Callable[[Drawn], str]]] = {"ascii": ascii_tree, "unicode": unicode_tree, "dot": dot, "svg": svg, "xhtml": xhtml}
 
 
-def draw(what: Mission | Plan, form: str = "unicode", *, statuses: bool = True) -> str:
+def dump(what: Mission | Plan, form: str = "unicode", *, statuses: bool = True) -> str:
     """The tree as text in one of `FORMATS`; of a Mission with the statuses of its last tick, unless `statuses` is False.
 
     `xml` is the mission as one file that Groot2 opens. Raises ValueError for an unknown format.
