@@ -9,7 +9,6 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample
@@ -24,7 +23,7 @@ from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
-from pluto_bt.runtime.watchdog import Hung, Watchdog, innermost
+from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.source import PlutoError
 from pluto_bt.trees.mission import Mission
 
@@ -249,7 +248,7 @@ class System:
         else:
             part.fault = fault.kind if begins else ""
             if begins and fault.kind == "hang":
-                self._hung(part, None)
+                self._hung(part)
 
     def _leaf_fault(self, name: str, kind: str) -> None:
         """A leaf raises, gives no status or never returns, as the world script says; "" = its own work again."""
@@ -265,10 +264,10 @@ class System:
         if active is None or not active.mission.replace_step(name, step if kind else None):
             self.say("warning", "unknown-leaf", "world", f'the world script names no leaf of this mission: "{name}"')
 
-    def _hung(self, part: Part, frame: FrameType | None) -> None:
+    def _hung(self, part: Part) -> None:
         """`part` never returned: name it, or the leaf it is in, stop the robot and end the run."""
         active = self.executive.core.active
-        leaf = active.mission.node_in(frame) or active.mission.active_leaf() if part.module.name == "executive" and active is not None else ""
+        leaf = active.mission.current_leaf() if part.module.name == "executive" and active is not None else ""
         what = f'leaf "{leaf}" never returned' if leaf else f'module "{part.module.name}" never returned'
         part.fault = "hang"
         self._end("STOPPED", "hung", what)
@@ -322,10 +321,10 @@ class System:
                 while not is_over():
                     scheduler.run_until(self.clock.now_ns() + NS // 2, lambda: not is_over())
                     self.options.on_progress(self)
-        except Hung as hung:
+        except Hung:
             if scheduler.current is None:
                 raise
-            self._hung(scheduler.current, innermost(hung))
+            self._hung(scheduler.current)
 
     def _threads_until(self, scheduler: Threads, is_over: Callable[[], bool]) -> None:
         while not is_over():
@@ -333,7 +332,7 @@ class System:
             self.options.on_progress(self)
             stuck = scheduler.stuck_part(THREADS_LIMIT_S)
             if stuck is not None and stuck.fault != "hang":
-                self._hung(stuck, scheduler.frame_of(stuck))
+                self._hung(stuck)
 
     def _is_over(self) -> bool:
         mission = self.executive.core.mission

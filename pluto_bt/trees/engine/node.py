@@ -19,7 +19,7 @@ from py_trees.common import BlackBoxLevel, Status
 from py_trees.logging import Logger
 
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.engine.errors import StepError
+from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result, Skip
 from pluto_bt.trees.ports import PortModel, PortProblem
 
@@ -115,12 +115,12 @@ class Node(Behaviour):
         self.status = new_status
 
     @property
-    def iterator(self) -> Iterator[Behaviour]:
+    def iterator(self) -> Iterator[Behaviour]:  # type: ignore[override]  # py_trees assigns it, we never do
         """py_trees keeps a generator here."""
         return self.tick()
 
     @property
-    def qualified_name(self) -> str:
+    def qualified_name(self) -> str:  # type: ignore[override]  # as above
         """`Type/name`, as py_trees shows it."""
         return f"{type(self).__name__}/{self.name}"
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
 from pluto_bt.trees.engine.context import Context, MissionClock
-from pluto_bt.trees.engine.errors import MissionError
+from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
@@ -150,7 +150,7 @@ def _foreign(model: Any) -> NodeType:
 
     ports = {port.name: PortModel(port.name, port.direction, default=port.default, required=False) for port in model.ports.values()}
     children = {"Control": (1, None), "Decorator": (1, 1)}.get(model.tag, (0, 0))
-    return NodeType(model.name, model.tag, ports, None, children)  # type: ignore[arg-type]
+    return NodeType(model.name, model.tag, ports, None, children)
 
 
 def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
