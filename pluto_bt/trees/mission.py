@@ -6,6 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from pluto_bt.trees.board_view import BoardView
+from pluto_bt.trees.controls import ReactiveSequence, Sequence, TryCatch
+from pluto_bt.trees.decorators import ForceFailure, Inverter
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.errors import StepError, TickError
 from pluto_bt.trees.engine.leaf import told
@@ -89,11 +91,14 @@ class Mission:
         Raises: TickError with the first error of a node, after all have been halted.
         """
         errors: list[Exception] = []
+        for tracked in self._tracked:
+            if tracked.node.status is not IDLE:
+                tracked.node.last = tracked.node.status
         _attempt(self.root.halt, errors)
         for tracked in self._tracked:
             _attempt(tracked.node.halt, errors)
         for tracked in self._tracked:
-            reset(tracked.node) if tracked.node.status is not RUNNING else setattr(tracked.node, "status", IDLE)
+            tracked.node.status = IDLE  # also of one whose halt hook raised
         if errors:
             raise self._told(errors[0]) from errors[0]
 
@@ -118,19 +123,19 @@ class Mission:
                 best = tracked
         return best.path if best is not None else ""
 
-    def deciding_leaf(self) -> Tracked | None:
-        """The leaf whose FAILURE the mission's is: followed down from the root along the last child that failed."""
+    def deciding_node(self) -> Tracked | None:
+        """The node whose FAILURE the mission's is, usually a leaf: followed down from the root; None if the root did not fail."""
         by_node = {id(tracked.node): tracked for tracked in self._tracked}
-        node, found = self.root, None
-        while node is not None:
-            found = by_node[id(node)]
-            failed = [child for child in node.children if (child.last if child.status is IDLE else child.status) is FAILURE]
-            node = failed[-1] if failed else None
-        return found if found is not None and not found.node.children else None
+        node = self.root
+        if _last(node) is not FAILURE:
+            return None
+        while (child := _culprit(node)) is not None:
+            node = child
+        return by_node[id(node)]
 
     def deciding_reason(self) -> str:
-        """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if no leaf failed."""
-        decider = self.deciding_leaf()
+        """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if the root did not fail."""
+        decider = self.deciding_node()
         if decider is None:
             return ""
         outputs: dict[str, Any] = getattr(decider.node, "last_outputs", {})
@@ -157,3 +162,18 @@ def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
         halt()
     except Exception as error:
         errors.append(error)
+
+
+def _last(node: Any) -> Result:
+    result: Result = node.last if node.status is IDLE else node.status
+    return result
+
+
+def _culprit(node: Any) -> Any:
+    """The child that made `node` fail: a sequence ends with the first that fails, others with the last; below an Inverter one succeeded."""
+    failed = [child for child in node.children if _last(child) is FAILURE]
+    if failed:
+        return failed[0] if isinstance(node, (Sequence, ReactiveSequence, TryCatch)) else failed[-1]
+    if isinstance(node, (Inverter, ForceFailure)):
+        return next((child for child in node.children if _last(child) is SUCCESS), None)
+    return None

@@ -45,6 +45,7 @@ class Kind:
         python: values of exactly this type need no cast.
         typed: False for "anything".
         literals: False if the value can only come from another node.
+        raw: True if a reader wants the entry's value as it is, not converted.
     """
 
     name: str
@@ -54,6 +55,7 @@ class Kind:
     python: type | None = None
     typed: bool = True
     literals: bool = True
+    raw: bool = False
 
     def convert(self, value: Any) -> Any:
         """`value` as this kind; a text is parsed. Raises PortProblem."""
@@ -190,10 +192,11 @@ def queue_of(item: Kind) -> Kind:
             return deque(item.convert(one) for one in value)
         raise ValueError("expected a list")
 
-    return Kind(f"queue<{item.name}>", f"{item.form}; more after ';'", lambda text: deque(_split(item, text)), cast, deque)
+    return Kind(f"queue<{item.name}>", f"{item.form}; more after ';'", lambda text: deque(split_list(item, text)), cast, deque, raw=True)
 
 
-def _split(item: Kind, text: str) -> list[Any]:
+def split_list(item: Kind, text: str) -> list[Any]:
+    """The elements of `1;2;3`; a trailing ';' adds nothing."""
     parts = text.split(";")
     if parts[-1] == "":
         parts.pop()
@@ -235,7 +238,7 @@ def _list_of(item: Kind) -> Kind:
     def parse(text: str) -> list[Any]:
         if text.startswith("json:"):
             return cast(json.loads(text[5:]))
-        return _split(item, text)
+        return split_list(item, text)
 
     def cast(value: Any) -> list[Any]:
         if not isinstance(value, (list, tuple, deque)):

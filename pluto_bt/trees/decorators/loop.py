@@ -10,7 +10,7 @@ from pluto_bt.trees.engine.node import DecoratorNode, reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.scopes import MissingValue
-from pluto_bt.trees.values import BOOL, DOUBLE, INT, STATUS, STRING, Kind, queue_of
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, STATUS, STRING, Kind, PortProblem, queue_of, split_list
 
 
 class Loop(DecoratorNode):
@@ -62,8 +62,15 @@ class Loop(DecoratorNode):
             return self._copy(value) if fresh else self.queue
         return value
 
-    def _copy(self, value: Iterable[Any]) -> deque[Any]:
-        return deque(self.ITEM.convert(item) for item in value)
+    def _copy(self, value: Any) -> deque[Any]:
+        try:
+            if isinstance(value, str):
+                return deque(split_list(self.ITEM, value))
+            if isinstance(value, Iterable):
+                return deque(self.ITEM.convert(item) for item in value)
+        except (ValueError, PortProblem) as error:
+            self.fail(f"port 'queue': {error}")
+        self.fail(f"port 'queue' holds no list but a {type(value).__name__}")
 
     def _empty(self) -> Result:
         answer: Result = self.read("if_empty")

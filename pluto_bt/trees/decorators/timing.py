@@ -46,7 +46,7 @@ class Timeout(DecoratorNode):
     def _expire(self) -> None:
         if self.child.status is RUNNING:
             self.expired = True
-            self.feedback_message = "the time is over"
+            self.feedback_message = "timeout"
             reset(self.child)
             self.context.wake_up()
 

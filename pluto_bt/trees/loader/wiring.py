@@ -12,7 +12,7 @@ from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel, PortProblem, range_problem
 from pluto_bt.trees.scopes import MissingValue, Scope, reader
-from pluto_bt.trees.values import Kind
+from pluto_bt.trees.values import ANYTHING, Kind
 
 Readers = dict[str, Callable[[], Any]]
 Writers = dict[str, Callable[[Any], None]]
@@ -56,7 +56,7 @@ def _literal(kind: Kind, given: Any) -> Callable[[], Any]:
 
 
 def _entry(scope: Scope, key: str, port: PortModel) -> Callable[[], Any]:
-    read = reader(scope, key, port.kind)
+    read = reader(scope, key, ANYTHING if port.kind.raw else port.kind)
     if port.ge is None and port.le is None and not port.choices:
         return read
 

@@ -16,10 +16,11 @@ from typing import Any, Final
 from pluto_bt.trees.script.terms import Assignment, Chain, Choice, Comparison, Env, Literal, Name, Term, Unary
 from pluto_bt.trees.script.tokens import ScriptSyntaxError, Token, tokens_of
 
-MAX_DEPTH: Final = 100
+MAX_DEPTH: Final = 50
 ASSIGNMENTS: Final = (":=", "=", "+=", "-=", "*=", "/=")
 COMPARISONS: Final = ("==", "!=", "<", ">", "<=", ">=")
 LEVELS: Final = (("||",), ("&&",), COMPARISONS, ("|", "^"), ("&",), ("+", "-", ".."), ("*", "/"))
+LEVEL_OF: Final = {sign: level for level, signs in enumerate(LEVELS) for sign in signs}
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,24 +105,22 @@ class _Parser:
         return Assignment(left, sign, self._deeper(self._statement))
 
     def _conditional(self) -> Term:
-        condition = self._level(0)
+        condition = self._binary(0)
         if not self._take("?"):
             return condition
         then = self._deeper(self._statement)
         self._need(":")
         return Choice(condition, then, self._deeper(self._conditional))
 
-    def _level(self, level: int) -> Term:
-        if level == len(LEVELS):
-            return self._prefix()
-        signs = LEVELS[level]
-        first = self._level(level + 1)
-        rest: list[tuple[str, Term]] = []
-        while sign := self._take(*signs):
-            rest.append((sign, self._level(level + 1)))
-        if not rest:
-            return first
-        return Comparison(first, tuple(rest)) if signs is COMPARISONS else Chain(first, tuple(rest))
+    def _binary(self, lowest: int) -> Term:
+        """Operators of level `lowest` and above, by precedence climbing; equal ones in a row make one chain."""
+        left = self._prefix()
+        while (level := LEVEL_OF.get(self._now.text, -1)) >= lowest and self._now.kind == "sign":
+            rest: list[tuple[str, Term]] = []
+            while sign := self._take(*LEVELS[level]):
+                rest.append((sign, self._binary(level + 1)))
+            left = Comparison(left, tuple(rest)) if LEVELS[level] is COMPARISONS else Chain(left, tuple(rest))
+        return left
 
     def _prefix(self) -> Term:
         sign = self._take("-", "~", "!")

@@ -1,0 +1,68 @@
+"""The module `drive`: joins the drive skill to its inbox, the base's topics and the base."""
+
+from __future__ import annotations
+
+from pluto_bt.blackboard.codes import LinkStatus
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.link import RELEASE, Link, newest
+from pluto_bt.skills import reasons
+from pluto_bt.skills.drive import Drive as Skill
+from pluto_bt.skills.drive import DriveParameters, DriveSenses
+from pluto_bt.skills.limits import STILL
+
+AMENDER = "avoid"  # only the upper link amends an order: the same stamp as before
+
+
+class Drive:
+    """Steps at 20 Hz, and at once when a command comes."""
+
+    def __init__(self, context: Context) -> None:
+        self._link = Link(context, "drive", "drive")
+        self._clock = context.clock
+        self._base = context.inboxes["base"]
+        self._skill = Skill(context.platform, getattr(context.platform, "drive", None) or DriveParameters())
+        self._raw = newest(context, "ATRV2/Drive/Raw")
+        self._sonar = newest(context, "ATRV2/Sonar")
+        self._bumper = newest(context, "ATRV2/Bumper")
+
+    def start(self, now_s: float) -> None:
+        """Begin at rest, without a command."""
+        if not self._link.is_running:
+            self._skill.reset()
+            self._link.start()
+
+    def step(self, now_s: float) -> None:
+        """Take a command, keep the base's velocity up to date, tell the status."""
+        letter = self._link.letter()
+        if letter is not None and letter.is_stop:
+            self._base.stop("drive", now_s)
+            self._skill.stop(letter.command)
+        if not self._link.is_running:
+            self._link.tell(now_s, self._rest(now_s), letter.command if letter is not None and letter.is_stop else None)
+            return
+        if letter is not None and not letter.is_stop:
+            if letter.command.flags == RELEASE:
+                self._release(now_s, letter.command)
+                return
+            last = self._skill.command
+            amends = letter.source == AMENDER and last is not None and last.stamp_s == letter.command.stamp_s
+            self._skill.accept(letter.command, now_s, amends)
+        twist = self._skill.step(now_s, DriveSenses(self._raw(), self._sonar(), self._bumper()))
+        self._base.post("drive", ActuatorState(now_s, 0, (0.0, 0.0), twist))
+        self._link.tell(now_s, self._skill.status(now_s), None if letter is None else letter.command)
+
+    def stop(self) -> None:
+        """The thread stops: zero velocity, and -10 for who asks."""
+        now_s = self._clock.now_s()
+        self._link.is_running = False
+        self._base.post("drive", ActuatorState(now_s))
+        self._link.tell(now_s, self._rest(now_s))
+
+    def _release(self, now_s: float, command: ActuatorState) -> None:
+        self._link.release()
+        self._base.post("drive", ActuatorState(now_s))
+        self._link.tell(now_s, self._rest(now_s), command)
+
+    def _rest(self, now_s: float) -> FVectorState:
+        return FVectorState(now_s, STILL, (int(LinkStatus.STOPPED_THREAD),), reasons.STOPPED, "the drive thread is stopped")

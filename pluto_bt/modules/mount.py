@@ -1,0 +1,45 @@
+"""Where the laser was when it looked: the robot's pose, the mount, and the wrist that pans and tilts it."""
+
+from __future__ import annotations
+
+import math
+
+from pluto_bt.blackboard import Blackboard
+from pluto_bt.blackboard.messages import ActuatorState, LaserScan
+from pluto_bt.blackboard.poses import share_between
+from pluto_bt.maps.platform import Platform
+from pluto_bt.skills.obstacles import Planar
+from pluto_bt.skills.sight import ScanView
+
+
+class LaserMount:
+    """The mount of one robot."""
+
+    def __init__(self, board: Blackboard, platform: Platform) -> None:
+        laser = platform.devices.laser
+        self._board = board
+        self._has_wrist = platform.devices.wrist is not None
+        self._x_m, self._y_m = (laser.x_m, laser.y_m) if laser is not None else (0.0, 0.0)
+
+    def view(self, scan: LaserScan, robot: Planar | None) -> ScanView:
+        """The scan as taken by a laser on a robot that stood at `robot` (None: nobody knows)."""
+        if robot is None:
+            return ScanView(scan, None)
+        pan_rad, tilt_rad = self._wrist_at(scan.stamp_s)
+        c, s = math.cos(robot[2]), math.sin(robot[2])
+        x_m, y_m = robot[0] + c * self._x_m - s * self._y_m, robot[1] + s * self._x_m + c * self._y_m
+        return ScanView(scan, (x_m, y_m, robot[2] + pan_rad), tilt_rad)
+
+    def _wrist_at(self, stamp_s: float) -> tuple[float, float]:
+        """Pan and tilt at a time, interpolated; the newest known where the history does not reach; 0 without a wrist."""
+        if not self._has_wrist:
+            return 0.0, 0.0
+        pair = self._board.around("wrist/state", stamp_s)
+        if pair is None:
+            newest = self._board.newest("wrist/state")
+            return newest.value.position if newest is not None and isinstance(newest.value, ActuatorState) else (0.0, 0.0)
+        before, after = pair[0].value, pair[1].value
+        assert isinstance(before, ActuatorState) and isinstance(after, ActuatorState)
+        share = share_between(before, after, stamp_s)
+        pan, tilt = (a + share * (b - a) for a, b in zip(before.position, after.position, strict=True))
+        return pan, tilt

@@ -1,0 +1,244 @@
+"""Avoidance: laser protection for what it passes down, and goto (Pluto manual, 6.2). `cmdFlags` = 10·A + T.
+
+Orders and their amendments. What comes from above is an order; its time of acceptance is the stamp of every command that goes down for
+it. A pass-through (T = 0, 1) is posted once; when laser protection slows it, or the heading of T = 1 has to follow the adjusted pose,
+the amended command is posted under the stamp of the order, and drive counts its 4 s from the first of one stamp. So the timeout of the
+order still fires. Goto gives a new order in each cycle, with the stamp of the cycle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, split_flags
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, SonarState
+from pluto_bt.maps.platform import Platform
+from pluto_bt.skills import reasons
+from pluto_bt.skills.avoid_parameters import AvoidParameters
+from pluto_bt.skills.drive import DriveParameters, drive_limits, is_finite
+from pluto_bt.skills.goto import Goto
+from pluto_bt.skills.heading import regulate, wrap
+from pluto_bt.skills.limits import STILL, Twist, within
+from pluto_bt.skills.obstacles import Planar
+from pluto_bt.skills.outline import Array, outline_of
+from pluto_bt.skills.sight import ScanView, Sight
+from pluto_bt.skills.sonar import where_word
+from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
+from pluto_bt.skills.verdict import ALL_WELL, Verdict, kept
+
+__all__ = ["Avoid", "AvoidParameters", "AvoidSenses"]
+
+SAME_MPS, SAME_RAD = 0.01, 0.004  # smaller changes of a command in force are not worth a new post
+REFRESH_S = 1.0  # a goto that has ended renews its zero velocity so often, so that drive does not time out
+LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean the platform's
+
+
+class AvoidSenses(NamedTuple):
+    """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
+
+    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force.
+    """
+
+    pose: Planar | None
+    dead: Planar | None
+    raw_heading_rad: float | None
+    twist: Twist = STILL
+    view: ScanView | None = None
+    sonar: SonarState | None = None
+
+
+class Avoid:
+    """The state of avoidance between two steps. `step` gives the command for drive, or None where the last one still holds."""
+
+    def __init__(self, platform: Platform, parameters: AvoidParameters, drive: DriveParameters) -> None:
+        self.parameters = parameters
+        self._limits = drive_limits(platform, drive)
+        self._outline = outline_of(platform.body.outline_m)
+        motors = platform.limits
+        self._latency_s = parameters.period_s + drive.period_s + motors.motor_latency_s + motors.motor_time_constant_s
+        self._goto = Goto(self._outline, self._limits, parameters)
+        self.sight = Sight(platform, parameters, self._outline)
+        self.reset()
+
+    def reset(self) -> None:
+        """No command, nothing seen."""
+        self.command: ActuatorState | None = None
+        self.verdict = ALL_WELL
+        self.goto_status = GotoStatus.NONE
+        self._kind: tuple[Avoidance, CommandType] | None = None
+        self._posted: ActuatorState | None = None
+        self._order_s = self._last_s = 0.0
+        self.sight.forget()
+
+    def accept(self, command: ActuatorState, now_s: float) -> None:
+        """Take an order."""
+        self.command, self._order_s, self._posted = command, now_s, None
+        self._kind = split_flags(command.flags) if is_finite(command) else None
+        if self._kind is not None and self._kind[1] is CommandType.WALL_FOLLOW:
+            self._kind = None
+        self.goto_status = GotoStatus.NONE
+        self.verdict = ALL_WELL
+        if self._kind is not None and self._kind[1] is CommandType.GOTO:
+            self._goto.begin(command, now_s)
+            self.goto_status = GotoStatus.RUNNING
+
+    def stop(self, command: ActuatorState) -> None:
+        """Stop was commanded: there is no order any more. The adapter sends the stop down."""
+        self.command, self._kind, self._posted = command, None, command
+        self.goto_status = GotoStatus.NONE
+        self.verdict = Verdict(reason=reasons.STOPPED, text="stop was commanded")
+
+    def step(self, now_s: float, senses: AvoidSenses) -> ActuatorState | None:
+        """Look, decide, and give the command for drive if it changed."""
+        dt_s, self._last_s = now_s - self._last_s, now_s
+        if senses.dead is not None:
+            self.sight.look(senses.view, senses.sonar, senses.dead, now_s)
+        if self.command is None or self.verdict.reason == reasons.STOPPED:
+            return None
+        if self._kind is None:
+            return self._refuse(self.command)
+        avoidance, kind = self._kind
+        if kind is CommandType.GOTO:
+            return self._step_goto(now_s, dt_s, senses, avoidance)
+        return self._pass_down(now_s, senses, avoidance, kind)
+
+    def status(self, now_s: float, drive: FVectorState | None, drive_has_it: bool) -> FVectorState:
+        """`avoidance/status`: own words first, else drive's once it has accepted our last command; a stopped drive shows always."""
+        data = drive.data if drive is not None else STILL
+        verdict = self.verdict
+        code, reason, text = int(verdict.code), verdict.reason, verdict.text
+        if drive is not None and not verdict.code and (drive_has_it or drive.element[0] == LinkStatus.STOPPED_THREAD):
+            code = drive.element[0]
+            if not reason:
+                reason, text = drive.reason, drive.text
+        return FVectorState(now_s, data, (code, int(self.goto_status)), reason, text)
+
+    # -------------------------------------------------------------- what goes down
+
+    def _refuse(self, command: ActuatorState) -> ActuatorState | None:
+        """Zero velocity for what is not known."""
+        text = f"avoidance takes cmdFlags 10*A + T with A 0 to 3, T 0 to 2 and finite numbers, or -1; not {command.flags}"
+        self.verdict = kept(self.verdict, Verdict(reason=reasons.BAD_COMMAND, text=text))
+        return self._post(0, 0.0, STILL, self._order_s)
+
+    def _pass_down(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance, kind: CommandType) -> ActuatorState | None:
+        """T = 0 and 1, slowed where the laser says so; drive takes care of the sonar."""
+        assert self.command is not None
+        flags = int(kind) + (10 if avoidance & Avoidance.SONAR else 0)
+        heading_rad, raw_rad = 0.0, senses.raw_heading_rad
+        if kind is CommandType.VELOCITY:
+            twist = within(self.command.velocity, self._limits)
+        elif senses.pose is None or raw_rad is None:
+            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading was commanded, and it is not known where the robot points"))
+            return self._post(0, 0.0, STILL, self._order_s)
+        else:
+            heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
+            speed_mps, most_radps = self.command.velocity
+            twist = within(regulate(wrap(heading_rad - raw_rad), speed_mps, self._limits, max(0.0, most_radps)), self._limits)
+        share, verdict = self._laser_share(now_s, senses, avoidance, twist)
+        self.verdict = kept(self.verdict, verdict)
+        v, w = self.command.velocity
+        if share >= 1.0:
+            return self._post(flags, heading_rad, (v, w), self._order_s)
+        if kind is CommandType.VELOCITY:
+            return self._post(flags, 0.0, (twist[0] * share, twist[1] * share), self._order_s)
+        return self._post(flags, *self._slow_turn(v, heading_rad, raw_rad or 0.0, twist, share), self._order_s)
+
+    def _step_goto(self, now_s: float, dt_s: float, senses: AvoidSenses, avoidance: Avoidance) -> ActuatorState | None:
+        """T = 2: steer and adapt the speed; zero velocity when it is there, stuck, or cannot know."""
+        flags = 11 if avoidance & Avoidance.SONAR else 1
+        raw_rad = senses.raw_heading_rad
+        if self.goto_status is not GotoStatus.RUNNING:
+            last = self._posted
+            return self._post(0, 0.0, STILL, now_s) if last is None or last.velocity != STILL or now_s - last.stamp_s >= REFRESH_S else None
+        fault = self._goto_fault(now_s, senses, avoidance)
+        if fault != ALL_WELL or senses.pose is None or senses.dead is None or raw_rad is None:
+            self.verdict = kept(self.verdict, fault)
+            self._goto.pause(now_s, dt_s)
+            return self._post(0, 0.0, STILL, now_s)
+        points = self.sight.points(senses.dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR))
+        is_moving = abs(senses.twist[0]) > 0.02 or abs(senses.twist[1]) > 0.05
+        way = self._goto.step(now_s, senses.pose, senses.dead, points, is_moving)
+        self.goto_status = way.status
+        if way.status is not GotoStatus.RUNNING:
+            reason = reasons.STUCK if way.status is GotoStatus.STUCK else ""
+            self.verdict = Verdict(reason=reason, text=way.text)
+            return self._post(0, 0.0, STILL, now_s)
+        limits = self._goto.limits
+        twist = within(regulate(way.turn_rad, way.speed_mps, limits), limits)
+        share, verdict = self._clear_share(points, twist, senses.twist)
+        self.verdict = kept(self.verdict, verdict)
+        if share == 0.0 and way.speed_mps < 0.0:
+            self._goto.give_up_backing()
+        heading_rad = raw_rad + way.turn_rad
+        if share >= 1.0:
+            return self._post(flags, heading_rad, (way.speed_mps, limits.turn_rate_radps), now_s)
+        return self._post(flags, *self._slow_turn(way.speed_mps, heading_rad, raw_rad, twist, share), now_s)
+
+    def _slow_turn(self, speed_mps: float, heading_rad: float, raw_rad: float, twist: Twist, share: float) -> tuple[float, Twist]:
+        """Heading and velocities of a regulator command that drive turns into `share` of `twist`."""
+        if share == 0.0:
+            return raw_rad, (0.0, LEAST_TURN_RADPS)  # stand, and hold the heading as it is
+        return heading_rad, (speed_mps * share, max(abs(twist[1]) * share, LEAST_TURN_RADPS))
+
+    def _post(self, flags: int, heading_rad: float, velocity: Twist, stamp_s: float) -> ActuatorState | None:
+        """The command, or None if it says the same as the last one under the same stamp."""
+        last = self._posted
+        if last is not None and last.stamp_s == stamp_s and last.flags == flags and abs(last.position[1] - heading_rad) < SAME_RAD:
+            dv, dw = abs(last.velocity[0] - velocity[0]), abs(last.velocity[1] - velocity[1])
+            to_rest = velocity != last.velocity and STILL in (velocity, last.velocity)
+            if dv < SAME_MPS and dw < SAME_RAD and not to_rest:
+                return None
+        self._posted = ActuatorState(stamp_s, flags, (0.0, heading_rad), velocity)
+        return self._posted
+
+    # -------------------------------------------------------------- protection
+
+    def _goto_fault(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance) -> Verdict:
+        """Why goto cannot know where to go."""
+        if senses.pose is None or senses.dead is None or senses.raw_heading_rad is None:
+            return Verdict(reason=reasons.NO_POSE, text="goto waits until it is known where the robot is")
+        fault = self.sight.laser_fault(now_s) if avoidance & Avoidance.LASER else ALL_WELL
+        if fault == ALL_WELL and avoidance & Avoidance.SONAR:
+            fault = self.sight.sonar_fault(now_s)
+        return fault
+
+    def _laser_share(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance, twist: Twist) -> tuple[float, Verdict]:
+        """How much of a passed-down twist the laser allows, and why not all."""
+        if not avoidance & Avoidance.LASER or self.sight.laser is None:
+            return 1.0, ALL_WELL
+        fault = self.sight.laser_fault(now_s)
+        if fault.code is LinkStatus.LASER_FATAL or (fault != ALL_WELL and twist != STILL):
+            return 0.0, fault
+        if twist == STILL:
+            return 1.0, ALL_WELL
+        if senses.dead is None:
+            return 0.0, Verdict(LinkStatus.LASER_SLOW_STOP, reasons.NO_POSE, "without dead reckoning it is not known where the obstacles are now")
+        share, verdict = self._clear_share(self.sight.points(senses.dead, True, False), twist, senses.twist)
+        blind_mps = self.parameters.blind_speed_mps
+        if twist[0] < -blind_mps and not self.sight.sees_behind(bool(avoidance & Avoidance.SONAR)) and share > blind_mps / -twist[0]:
+            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "the laser does not see behind: backing slowly")
+        return share, verdict
+
+    def _clear_share(self, points: Array, wanted: Twist, now: Twist) -> tuple[float, Verdict]:
+        """The share of the wanted twist that can be braked before any point; the twist in force counts too, since it still has to be braked."""
+        share, verdict = 1.0, ALL_WELL
+        for twist in (wanted, now) if _differs(wanted, now) else (wanted,):
+            if twist == STILL:
+                continue
+            span_s = horizon_s(twist, self._limits, self._latency_s)
+            free_s, which = first_contact(points, self._outline.planes, twist[0], twist[1], span_s)
+            allowed = allowed_share(free_s, twist, self._limits, self._latency_s)
+            if allowed < share:
+                share, verdict = allowed, self._seen(points, which)
+        return share, verdict
+
+    def _seen(self, points: Array, which: int) -> Verdict:
+        x_m, y_m, _ = points[which].tolist()
+        text = f"obstacle {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
+        return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, text)
+
+
+def _differs(a: Twist, b: Twist) -> bool:
+    return abs(a[0] - b[0]) > 0.1 or abs(a[1] - b[1]) > 0.15 or not math.isclose(math.copysign(1.0, a[0]), math.copysign(1.0, b[0]))

@@ -1,0 +1,146 @@
+"""Goto (T = 2): a straight way to a point with simple avoidance (Pluto manual, 6.2). Decides speed and heading, and whether it is there or stuck."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from pluto_bt.blackboard.codes import GotoStatus
+from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.skills.avoid_parameters import AvoidParameters
+from pluto_bt.skills.heading import wrap
+from pluto_bt.skills.limits import Limits
+from pluto_bt.skills.obstacles import Planar
+from pluto_bt.skills.outline import Array, Outline
+from pluto_bt.skills.steering import ROOM_M, Steer, Steering
+from pluto_bt.skills.sweep import first_contact
+
+PROGRESS_M = 0.1  # coming nearer by less is no progress
+ARRIVAL_MPS = 0.08  # slowest approach
+COMFORT_SHARE = 0.5  # of the deceleration is used when nothing presses
+WEDGED_M = 0.05  # with less free way on the best heading the robot cannot go on
+BACKING_MPS = 0.12
+BACKING_S = 8.0
+
+
+class Way(NamedTuple):
+    """What goto wants: a speed, a turn relative to the present heading, and how it stands."""
+
+    speed_mps: float
+    turn_rad: float
+    status: GotoStatus
+    text: str = ""
+
+
+class Goto:
+    """One goto from command to end. `REACHED` and `STUCK` stay until the next command."""
+
+    def __init__(self, outline: Outline, limits: Limits, parameters: AvoidParameters) -> None:
+        self._outline, self._most, self.parameters = outline, limits, parameters
+        self._steer = Steer(outline)
+
+    def begin(self, command: ActuatorState, now_s: float) -> None:
+        """A new goal: position = x, y in Localization/Pose; velocity = most speed and turn rate; force[0]; acceleration[0] = tolerance_m if > 0."""
+        speed_mps, turn_radps = command.velocity
+        most, p = self._most, self.parameters
+        speed_mps = min(speed_mps if speed_mps > 0.0 else p.goto_speed_mps, most.speed_mps)
+        self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=min(turn_radps, most.turn_rate_radps) if turn_radps > 0.0 else most.turn_rate_radps)
+        self._goal = command.position
+        self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
+        self._tolerance_m = command.acceleration[0] if command.acceleration[0] > 0.0 else p.goto_tolerance_m
+        self.status = GotoStatus.RUNNING
+        self._best_m = math.inf
+        self._progress_s = self._moved_s = now_s
+        self._back_from: tuple[Planar, float] | None = None
+        self._driven: list[Planar] = []
+        self._steer.forget()
+
+    def pause(self, now_s: float, dt_s: float) -> None:
+        """Time in which the robot had to stand for a reason outside of goto (laser rebooting) does not count as being stuck."""
+        self._progress_s = min(now_s, self._progress_s + dt_s)
+        self._moved_s = min(now_s, self._moved_s + dt_s)
+
+    def step(self, now_s: float, pose: Planar, odometry: Planar, points: Array, is_moving: bool) -> Way:
+        """The next decision.
+
+        Args:
+            pose: of the robot in the frame of the goal.
+            odometry: of the robot in a frame that never jumps.
+            points: (n, 3) obstacles in the robot frame with margins.
+            is_moving: whether the robot really moved since the last step.
+        """
+        dx, dy = self._goal[0] - pose[0], self._goal[1] - pose[1]
+        distance_m, goal_rad = math.hypot(dx, dy), wrap(math.atan2(dy, dx) - pose[2])
+        self._note(now_s, distance_m, is_moving)
+        if self._is_there(distance_m, goal_rad, now_s):
+            self.status = GotoStatus.REACHED
+            return Way(0.0, 0.0, self.status, f"goal reached within {distance_m:.2f} m")
+        if (why := self._stuck_text(now_s, distance_m)) != "":
+            self.status = GotoStatus.STUCK
+            return Way(0.0, 0.0, self.status, why)
+        if self._back_from is not None and self._goes_on_backing(now_s, odometry):
+            return Way(-BACKING_MPS, 0.0, self.status)
+        steering = self._steered(points, goal_rad, distance_m, odometry[2])
+        if self._is_wedged(steering, now_s, odometry):
+            return Way(-BACKING_MPS, 0.0, self.status)
+        return Way(self._speed_mps(steering, distance_m), steering.heading_rad, self.status)
+
+    def give_up_backing(self) -> None:
+        """The way back is blocked too."""
+        self._back_from = None
+
+    def _note(self, now_s: float, distance_m: float, is_moving: bool) -> None:
+        if distance_m < self._best_m - PROGRESS_M:
+            self._best_m, self._progress_s = distance_m, now_s
+        if is_moving:
+            self._moved_s = now_s
+
+    def _is_there(self, distance_m: float, goal_rad: float, now_s: float) -> bool:
+        """Inside half the tolerance; or inside the tolerance and not coming nearer any more."""
+        if distance_m > self._tolerance_m:
+            return False
+        return distance_m <= 0.5 * self._tolerance_m or abs(goal_rad) > math.radians(80.0) or now_s - self._moved_s > 1.0
+
+    def _stuck_text(self, now_s: float, distance_m: float) -> str:
+        p = self.parameters
+        if now_s - self._moved_s > p.blocked_after_s:
+            return f"could not move for {p.blocked_after_s:g} s, {distance_m:.2f} m to go"
+        if now_s - self._progress_s > p.stuck_after_s:
+            return f"came no nearer for {p.stuck_after_s:g} s, {distance_m:.2f} m to go"
+        return ""
+
+    def _steered(self, points: Array, goal_rad: float, distance_m: float, heading_rad: float) -> Steering:
+        near = points[np.hypot(points[:, 0], points[:, 1]) < self._outline.reach_m + 0.2]
+        right_rad, _ = first_contact(near, self._outline.planes, 0.0, -1.0, math.pi)
+        left_rad, _ = first_contact(near, self._outline.planes, 0.0, 1.0, math.pi)
+        return self._steer.choose(points, goal_rad, distance_m - 0.5 * self._tolerance_m, self._force, (right_rad, left_rad), heading_rad)
+
+    def _speed_mps(self, steering: Steering, distance_m: float) -> float:
+        """Slower before obstacles, in narrow places, and towards the goal."""
+        brake_mps2 = COMFORT_SHARE * self.limits.deceleration_mps2
+        room = 0.35 + 0.65 * min(1.0, max(0.0, steering.room_m) / ROOM_M)
+        before_m, to_goal_m = max(0.0, steering.free_m), max(0.0, distance_m - 0.3 * self._tolerance_m)
+        speed_mps = min(self.limits.speed_mps * room, math.sqrt(2.0 * brake_mps2 * before_m))
+        return min(speed_mps, max(ARRIVAL_MPS, math.sqrt(2.0 * brake_mps2 * to_goal_m)))
+
+    def _is_wedged(self, steering: Steering, now_s: float, odometry: Planar) -> bool:
+        """Begin to back where neither driving nor turning helps, if the ground behind has just been driven over."""
+        self._driven = [*self._driven[-80:], odometry]
+        if steering.free_m > WEDGED_M or abs(steering.heading_rad) > math.radians(10.0) or now_s - self._moved_s < 1.0:
+            return False
+        came_m = max(math.hypot(odometry[0] - x, odometry[1] - y) for x, y, _ in self._driven)
+        if self.limits.min_turn_radius_m > 0.0 or came_m < self.parameters.back_off_m or self.parameters.back_off_m <= 0.0:
+            return False
+        self._back_from, self._moved_s = (odometry, now_s), now_s
+        return True
+
+    def _goes_on_backing(self, now_s: float, odometry: Planar) -> bool:
+        assert self._back_from is not None
+        (x, y, _), since_s = self._back_from
+        if math.hypot(odometry[0] - x, odometry[1] - y) < self.parameters.back_off_m and now_s - since_s < BACKING_S:
+            return True
+        self._back_from, self._driven = None, []
+        return False

@@ -1,0 +1,31 @@
+"""The words with which the links of the chain say why the robot does not move as commanded. Closed list; `FVectorState.reason` is one of them or ""."""
+
+from __future__ import annotations
+
+BAD_COMMAND = "bad-command"
+BUMPER = "bumper"
+COMMAND_TIMEOUT = "command-timeout"
+LASER = "laser"
+LASER_FATAL = "laser-fatal"
+LASER_STALE = "laser-stale"
+NO_POSE = "no-pose"
+ODOMETRY_STALE = "odometry-stale"
+SONAR = "sonar"
+SONAR_STALE = "sonar-stale"
+STOPPED = "stopped"
+STUCK = "stuck"
+
+CHAIN_REASONS: dict[str, str] = {
+    BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
+    BUMPER: "a bumper is or was pressed; back off, release it, then send a new command",
+    COMMAND_TIMEOUT: "no new command came in time; a controlled stop",
+    LASER: "the laser sees an obstacle in the way; slower or stopped until it is clear",
+    LASER_FATAL: "the laser has had a fatal error and is rebooting (about 20 s)",
+    LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
+    NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
+    ODOMETRY_STALE: "the base's odometry is missing or too old",
+    SONAR: "a sonar hears an obstacle in the way; slower or stopped until it is clear",
+    SONAR_STALE: "the sonar is asked for and delivers nothing that can be trusted",
+    STOPPED: "stop was commanded, or the link's thread is stopped",
+    STUCK: "goto makes no progress towards the goal",
+}

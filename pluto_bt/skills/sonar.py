@@ -1,0 +1,96 @@
+"""What the sonar ring hears, as points in the robot frame."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pluto_bt.blackboard.codes import LinkStatus
+from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.platform import Sonar
+from pluto_bt.skills.outline import Array, Outline
+
+Mask = NDArray[np.bool_]
+ECHO_SPREAD = 0.25  # the echo came from somewhere in the cone: it is put on the axis and at this share of the opening to each side
+
+DEAF_M = 0.02  # readings are not more exact than this
+
+
+class SonarRing:
+    """The geometry of a ring, worked out once.
+
+    A cone says how far the echo is, not where in the cone it arose. Three points stand for it; neighbouring cones overlap
+    and cover what lies beyond them, and an obstacle that is only just in a cone's edge, such as a door post, is not put before the robot.
+    """
+
+    def __init__(self, sonar: Sonar, outline: Outline) -> None:
+        self.max_range_m = sonar.max_range_m
+        self.min_range_m = sonar.min_range_m
+        self.count = len(sonar.transducers)
+        spread_rad = math.radians(sonar.cone_deg) * ECHO_SPREAD
+        self._places = np.array([(t.x_m, t.y_m) for t in sonar.transducers]).repeat(3, axis=0)
+        angles = [math.radians(t.theta_deg) + side * spread_rad for t in sonar.transducers for side in (-1.0, 0.0, 1.0)]
+        self._ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        self._leaves_m = np.array([outline.way_out_m(*place, *way) for place, way in zip(self._places.tolist(), self._ways.tolist(), strict=True)])
+        self.axes = np.array([(t.x_m, t.y_m, math.radians(t.theta_deg)) for t in sonar.transducers])
+        self.half_cone_rad = math.radians(sonar.cone_deg) / 2.0
+        self.hears_behind = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) > math.radians(135.0) for t in sonar.transducers)
+        self.hears_ahead = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) < math.radians(45.0) for t in sonar.transducers)
+
+    def points(self, ranges_m: Sequence[float], within_m: float, margin_m: float) -> Array | None:
+        """(n, 3) x, y, margin of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number)."""
+        ranges = np.array(ranges_m)
+        if ranges.shape != (self.count,) or not np.isfinite(ranges).all():
+            return None
+        return self.place(ranges, ranges < min(within_m, self.max_range_m), margin_m)
+
+    def place(self, ranges_m: Array, wanted: Mask, margin_m: float) -> Array:
+        """The points of the transducers in the mask `wanted`.
+
+        A transducer is deaf below its least range and reports that range for everything nearer: such an echo is put on the outline.
+        """
+        mask = wanted.repeat(3)
+        echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(3)[mask]
+        echoes = np.maximum(echoes, self._leaves_m[mask])
+        points = np.full((len(echoes), 3), margin_m)
+        points[:, :2] = self._places[mask] + self._ways[mask] * echoes[:, None]
+        return points
+
+
+def sonar_code(x_m: float, y_m: float, outline: Outline) -> LinkStatus:
+    """3, 4 or 5: whether an echo at (x, y) lies in front of, behind, or beside the outline."""
+    if x_m > outline.front_m or (abs(y_m) <= outline.side_m and x_m > 0.0):
+        return LinkStatus.SONAR_FRONT
+    if x_m < -outline.back_m or abs(y_m) <= outline.side_m:
+        return LinkStatus.SONAR_BACK
+    return LinkStatus.SONAR_SIDES
+
+
+def where_word(x_m: float, y_m: float) -> str:
+    """ "3 degrees left", "120 degrees right": the bearing of a point for a sentence."""
+    bearing_deg = math.degrees(math.atan2(y_m, x_m))
+    return f"{abs(bearing_deg):.0f} degrees {'left' if bearing_deg >= 0.0 else 'right'}"
+
+
+@kernel
+def unexplained(axes: Array, ranges_m: Array, half_cone_rad: float, points: Array, slack_m: float) -> Mask:
+    """Which echoes no known point explains: nothing known lies in the cone as near as the echo (a glass door, a low kerb).
+
+    Args:
+        axes: (k, 3) transducers, x m, y m, theta rad.
+        points: (n, 3) known points in the robot frame.
+        slack_m: how much farther than the echo a point may be and still explain it.
+    """
+    open_echo = np.ones(axes.shape[0], dtype=np.bool_)
+    for k in range(axes.shape[0]):
+        c, s = np.cos(axes[k, 2]), np.sin(axes[k, 2])
+        for i in range(points.shape[0]):
+            dx, dy = points[i, 0] - axes[k, 0], points[i, 1] - axes[k, 1]
+            ahead, aside = c * dx + s * dy, c * dy - s * dx
+            if dx * dx + dy * dy < (ranges_m[k] + slack_m) ** 2 and abs(aside) <= ahead * np.tan(half_cone_rad) + slack_m:
+                open_echo[k] = False
+                break
+    return open_echo

@@ -1,0 +1,159 @@
+"""Where to steer on the way to a goal: the manual's vector sum proposes a heading, the freest heading near it is taken.
+
+The sum: the goal pulls with the weight `force`, each direction in which something is nearer than the reach pushes away, the nearer the
+harder. Only the part of the push across the goal's direction bends the way; the part against it would only cancel the goal
+(the classic trap of the rule), and slowing down is left to the free way ahead. Then all headings are weighed: near to the sum's, near to
+the last one, free for far enough, with room at the sides. The side once taken around an obstacle is kept until the goal is in the clear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from pluto_bt.maps.kernel import kernel
+from pluto_bt.skills.heading import wrap
+from pluto_bt.skills.outline import Array, Outline
+
+HEADINGS = 72
+STEP_RAD = math.tau / HEADINGS
+ENOUGH_M = 2.0  # a heading that is free so far counts as free
+CLEAR_M = 0.04  # steering keeps so much farther away than the braking margin, which is thus touched only in need
+ROOM_M = 0.35  # a heading with so much room on both sides could not have more
+LOOK_M = 1.5  # how far ahead room at the sides counts
+PUSH = 0.35  # how strongly obstacles push against a goal of force 1
+# the weights of a heading, in radians of detour that each is worth
+BLOCKED_RAD, NARROW_RAD, CHANGE_RAD_PER_RAD, OTHER_SIDE_RAD = 3.0, 0.7, 0.2, 1.6
+SIDE_TAKEN_RAD = math.radians(15.0)
+
+_HEADINGS = -math.pi + STEP_RAD * np.arange(HEADINGS)
+
+
+@dataclass(slots=True)
+class Steering:
+    """A decision: `heading_rad` relative to the robot's, how far the way is free on it, and how much room there is beside it."""
+
+    heading_rad: float
+    free_m: float
+    room_m: float
+    goal_is_free: bool
+
+
+class Steer:
+    """Chooses headings one after another; remembers the last one and the side taken, both in a frame that does not turn with the robot."""
+
+    def __init__(self, outline: Outline) -> None:
+        self._outline = outline
+        self.forget()
+
+    def forget(self) -> None:
+        """A new goal."""
+        self._last_rad: float | None = None
+        self._side = 0.0
+
+    def choose(
+        self, points: Array, goal_rad: float, goal_m: float, force: float, turnable_rad: tuple[float, float], heading_rad: float
+    ) -> Steering:
+        """The heading to take.
+
+        Args:
+            points: (n, 3) obstacles in the robot frame with margins.
+            goal_rad, goal_m: bearing and distance of the goal, robot frame.
+            force: weight of the goal; > 1 weaker avoidance.
+            turnable_rad: how far the robot can turn on the spot to the right and to the left, both positive.
+            heading_rad: of the robot, in the frame in which decisions are remembered.
+        """
+        o = self._outline
+        headings = np.append(_HEADINGS, goal_rad)
+        ways = corridors(points, headings, o.front_m, o.back_m, o.side_m, LOOK_M, ENOUGH_M + 1.0)
+        enough_m = min(ENOUGH_M, max(goal_m, 0.1))
+        sum_rad = goal_rad + bend(points, goal_rad, o.side_m, force)
+        change = self._last_rad is not None
+        last_rad = wrap(self._last_rad - heading_rad) if self._last_rad is not None else 0.0
+        best = weigh(headings, ways, sum_rad, goal_rad, last_rad, change, self._side, enough_m, turnable_rad[0], turnable_rad[1])
+        chosen_rad, free_m, room_m = float(headings[best]), float(ways[best, 0]), float(ways[best, 1])
+        goal_is_free = bool(ways[-1, 0] >= enough_m)
+        self._remember(chosen_rad, goal_rad, heading_rad, goal_is_free)
+        return Steering(chosen_rad, free_m, room_m, goal_is_free)
+
+    def _remember(self, chosen_rad: float, goal_rad: float, heading_rad: float, goal_is_free: bool) -> None:
+        self._last_rad = chosen_rad + heading_rad
+        detour_rad = wrap(chosen_rad - goal_rad)
+        if goal_is_free:
+            self._side = 0.0
+        elif self._side == 0.0 and abs(detour_rad) > SIDE_TAKEN_RAD:
+            self._side = math.copysign(1.0, detour_rad)
+
+
+@kernel
+def corridors(points: Array, headings: Array, front_m: float, back_m: float, side_m: float, look_m: float, far_m: float) -> Array:
+    """For each heading, how far the outline can go straight on it, and how much room it has beside it: (m, 2) metres.
+
+    The free way is measured from the front edge after turning to the heading; a point counts if it lies within the outline's
+    half width plus the point's margin. The room is what is left between outline and points on the first `look_m`, at most 1 m.
+    """
+    ways = np.zeros((headings.shape[0], 2))
+    for k in range(headings.shape[0]):
+        c, s = np.cos(headings[k]), np.sin(headings[k])
+        free_m, room_m = far_m, 1.0
+        for i in range(points.shape[0]):
+            ahead, aside = c * points[i, 0] + s * points[i, 1], abs(c * points[i, 1] - s * points[i, 0])
+            if ahead < -back_m or ahead > far_m + front_m:
+                continue
+            gap_m = aside - side_m
+            if gap_m < points[i, 2] + CLEAR_M:
+                if ahead > 0.0:
+                    free_m = min(free_m, max(0.0, ahead - front_m - points[i, 2]))
+            elif ahead < look_m:
+                room_m = min(room_m, gap_m)
+        ways[k, 0], ways[k, 1] = free_m, room_m
+    return ways
+
+
+@kernel
+def bend(points: Array, goal_rad: float, side_m: float, force: float) -> float:
+    """How much the vector sum turns away from the goal: radians, counter-clockwise positive, less than 90 degrees.
+
+    Each of 72 directions pushes once, with the nearest point in it, so that many beams on one post do not count for more than a few.
+    """
+    nearest = np.full(HEADINGS, 1e9)
+    for i in range(points.shape[0]):
+        x, y = points[i, 0], points[i, 1]
+        sector = int((np.arctan2(y, x) + np.pi) / (2.0 * np.pi) * HEADINGS) % HEADINGS
+        nearest[sector] = min(nearest[sector], np.sqrt(x * x + y * y))
+    across = 0.0
+    for k in range(HEADINGS):
+        gap_m = max(0.1, nearest[k] - side_m)
+        if gap_m < 3.0:
+            bearing = (k + 0.5) * STEP_RAD - np.pi - goal_rad
+            if np.cos(bearing) > -0.2:  # what lies behind does not push
+                across -= np.sin(bearing) * (1.0 / gap_m - 1.0 / 3.0) * STEP_RAD
+    return float(np.arctan(0.35 * across / max(0.05, force)))
+
+
+@kernel
+def weigh(
+    headings: Array, ways: Array, sum_rad: float, goal_rad: float, last_rad: float, has_last: bool, side: float, enough_m: float,
+    right_rad: float, left_rad: float,
+) -> int:  # fmt: skip
+    """Index of the heading with the least cost, all costs in radians of detour."""
+    best, least = 0, 1e9
+    for k in range(headings.shape[0]):
+        heading = headings[k]
+        if heading < -right_rad or heading > left_rad:
+            continue
+        detour = heading - goal_rad
+        detour -= 2.0 * np.pi * np.round(detour / (2.0 * np.pi))
+        off = heading - sum_rad
+        off -= 2.0 * np.pi * np.round(off / (2.0 * np.pi))
+        cost = abs(off) + BLOCKED_RAD * max(0.0, 1.0 - ways[k, 0] / enough_m) + NARROW_RAD * max(0.0, 1.0 - ways[k, 1] / ROOM_M)
+        if has_last:
+            change = heading - last_rad
+            cost += CHANGE_RAD_PER_RAD * abs(change - 2.0 * np.pi * np.round(change / (2.0 * np.pi)))
+        if side != 0.0 and detour * side < 0.0:
+            cost += OTHER_SIDE_RAD
+        if cost < least:
+            best, least = k, cost
+    return best
