@@ -13,7 +13,7 @@ from pluto_bt.skills.avoid import Avoid as Skill
 from pluto_bt.skills.avoid import AvoidParameters, AvoidSenses
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
-from pluto_bt.skills.obstacles import Planar
+from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"

@@ -13,8 +13,7 @@ from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.heading import wrap
 from pluto_bt.skills.limits import Limits
-from pluto_bt.skills.obstacles import Planar
-from pluto_bt.skills.outline import Array, Outline
+from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.steering import ROOM_M, Steer, Steering
 from pluto_bt.skills.sweep import first_contact
 
@@ -69,7 +68,7 @@ class Goto:
         Args:
             pose: of the robot in the frame of the goal.
             odometry: of the robot in a frame that never jumps.
-            points: (n, 3) obstacles in the robot frame with margins.
+            points: (n, 5) obstacles in the robot frame: x, y, margin, velocity.
             is_moving: whether the robot really moved since the last step.
         """
         dx, dy = self._goal[0] - pose[0], self._goal[1] - pose[1]

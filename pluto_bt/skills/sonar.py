@@ -41,7 +41,7 @@ class SonarRing:
         self.hears_ahead = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) < math.radians(45.0) for t in sonar.transducers)
 
     def points(self, ranges_m: Sequence[float], within_m: float, margin_m: float) -> Array | None:
-        """(n, 3) x, y, margin of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number)."""
+        """(n, 5) x, y, margin and no velocity of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number)."""
         ranges = np.array(ranges_m)
         if ranges.shape != (self.count,) or not np.isfinite(ranges).all():
             return None
@@ -55,7 +55,8 @@ class SonarRing:
         mask = wanted.repeat(3)
         echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(3)[mask]
         echoes = np.maximum(echoes, self._leaves_m[mask])
-        points = np.full((len(echoes), 3), margin_m)
+        points = np.zeros((len(echoes), 5))
+        points[:, 2] = margin_m
         points[:, :2] = self._places[mask] + self._ways[mask] * echoes[:, None]
         return points
 
@@ -81,7 +82,7 @@ def unexplained(axes: Array, ranges_m: Array, half_cone_rad: float, points: Arra
 
     Args:
         axes: (k, 3) transducers, x m, y m, theta rad.
-        points: (n, 3) known points in the robot frame.
+        points: (n, 5) known points in the robot frame.
         slack_m: how much farther than the echo a point may be and still explain it.
     """
     open_echo = np.ones(axes.shape[0], dtype=np.bool_)
