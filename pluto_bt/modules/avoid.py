@@ -84,7 +84,8 @@ class Avoid:
         oldest_s = now_s - self._parameters.pose_stale_s
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
-        return AvoidSenses(_planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s), raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
+        pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
+        return AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

@@ -129,7 +129,7 @@ class Avoid:
         if kind is CommandType.VELOCITY:
             twist = within(self.command.velocity, self._limits)
         elif senses.pose is None or raw_rad is None:
-            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading was commanded, and it is not known where the robot points"))
+            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading is commanded, and nobody knows where the robot points"))
             return self._post(0, 0.0, STILL, self._order_s)
         else:
             heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
@@ -217,7 +217,7 @@ class Avoid:
         share, verdict = self._clear_share(self.sight.points(senses.dead, True, False, now_s), twist, senses.twist)
         blind_mps = self.parameters.blind_speed_mps
         if twist[0] < -blind_mps and not self.sight.sees_behind(bool(avoidance & Avoidance.SONAR)) and share > blind_mps / -twist[0]:
-            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "the laser does not see behind: backing slowly")
+            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "no sensor sees behind: backing slowly")
         return share, verdict
 
     def _clear_share(self, points: Array, wanted: Twist, now: Twist) -> tuple[float, Verdict]:

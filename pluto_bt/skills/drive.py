@@ -140,7 +140,7 @@ class Drive:
         if self._is_stopped:
             return STILL, True, Verdict(reason=reasons.STOPPED, text="stop was commanded")
         if self._is_bad:
-            return STILL, True, Verdict(reason=reasons.BAD_COMMAND, text=f"drive takes cmdFlags 0, 1, 10, 11 with finite numbers, not {command.flags}")
+            return STILL, True, Verdict(reason=reasons.BAD_COMMAND, text=f"drive takes finite numbers and cmdFlags 0, 1, 10, 11; not {command.flags}")
         raw = senses.raw
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
             return STILL, True, Verdict(reason=reasons.ODOMETRY_STALE, text=f"no odometry for more than {p.odometry_stale_s:g} s")

@@ -46,7 +46,8 @@ class Goto:
         speed_mps, turn_radps = command.velocity
         most, p = self._most, self.parameters
         speed_mps = min(speed_mps if speed_mps > 0.0 else p.goto_speed_mps, most.speed_mps)
-        self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=min(turn_radps, most.turn_rate_radps) if turn_radps > 0.0 else most.turn_rate_radps)
+        turn_radps = min(turn_radps if turn_radps > 0.0 else math.inf, most.turn_rate_radps)
+        self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=turn_radps)
         self._goal = command.position
         self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
         self._tolerance_m = command.acceleration[0] if command.acceleration[0] > 0.0 else p.goto_tolerance_m

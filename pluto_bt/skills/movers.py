@@ -66,7 +66,9 @@ class Movers:
 
 
 @kernel
-def came_closer(ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int) -> Mask:
+def came_closer(
+    ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int
+) -> Mask:
     """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in three beams side by side.
 
     Args:

@@ -36,7 +36,12 @@ class Obstacles:
         self._last_pose: Planar = (0.0, 0.0, 0.0)
 
     def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, now_s: float) -> None:
-        """Take a scan that was taken from `laser` (odometry frame, yaw with the wrist's pan), `z_m` above the ground and looking down by `tilt_rad`."""
+        """Take a scan.
+
+        Args:
+            laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
+            z_m, tilt_rad: height of the laser above the ground, and how far it looked down.
+        """
         p, ranges = self.parameters, scan.ranges_m
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(ranges))
         near = (ranges > 0.0) & (ranges < p.reach_m + 1.0) & ~self._is_lone(ranges)  # NaN compares False
@@ -48,7 +53,8 @@ class Obstacles:
         seen = np.zeros((len(r), 6))
         _place(x, y, laser, seen)
         seen[:, SINCE] = scan.stamp_s
-        moves, seen[:, VX:] = self._movers.velocities(seen[:, :MARGIN], np.flatnonzero(near), self._has_moved(ranges, near, laser, scan), scan.stamp_s)
+        moved = self._has_moved(ranges, near, laser, scan)
+        moves, seen[:, VX:] = self._movers.velocities(seen[:, :MARGIN], np.flatnonzero(near), moved, scan.stamp_s)
         seen[:, MARGIN] = np.where(moves, p.moving_margin_m, p.margin_m)
         self._keep_what_left_the_field(laser, scan, now_s)
         self._seen = seen

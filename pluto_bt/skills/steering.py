@@ -26,7 +26,7 @@ LOOK_M = 1.5  # how far ahead room at the sides counts
 PUSH = 0.35  # how strongly obstacles push against a goal of force 1
 # the weights of a heading, in radians of detour that each is worth
 BLOCKED_RAD, NARROW_RAD, CHANGE_RAD_PER_RAD, OTHER_SIDE_RAD = 3.0, 0.7, 0.2, 1.6
-MEETING_MPS, MEETING_S = 1.0, 2.0  # how fast robot and walker come together, and how far ahead a walker's way is guessed
+MEETING_MPS, MEETING_S = 0.5, 2.0  # how fast the robot goes to meet a walker, and how far ahead the walker's way is guessed
 SIDE_TAKEN_RAD = math.radians(15.0)
 
 _HEADINGS = -math.pi + STEP_RAD * np.arange(HEADINGS)
@@ -95,7 +95,9 @@ def met(points: Array, speed_mps: float, most_s: float) -> Array:
     out = points.copy()
     for i in range(points.shape[0]):
         if points[i, 3] != 0.0 or points[i, 4] != 0.0:
-            ahead_s = min(most_s, np.sqrt(points[i, 0] ** 2 + points[i, 1] ** 2) / speed_mps)
+            distance_m = np.sqrt(points[i, 0] ** 2 + points[i, 1] ** 2) + 0.01
+            closing_mps = -(points[i, 0] * points[i, 3] + points[i, 1] * points[i, 4]) / distance_m
+            ahead_s = min(most_s, distance_m / (speed_mps + max(0.0, closing_mps)))
             out[i, 0] += points[i, 3] * ahead_s
             out[i, 1] += points[i, 4] * ahead_s
     return out
