@@ -97,7 +97,9 @@ class Rig:
         assert sample is not None and isinstance(sample.value, FVectorState)
         return sample.value
 
-    def order(self, flags: int, position: Point = (0.0, 0.0), velocity: Point = (0.0, 0.0), force: float = 0.0, to: str = "motion", tolerance: float = 0.0) -> str:
+    def order(
+        self, flags: int, position: Point = (0.0, 0.0), velocity: Point = (0.0, 0.0), force: float = 0.0, to: str = "motion", tolerance: float = 0.0
+    ) -> str:
         """Post a command as the mission does."""
         return self.inboxes[to].post("mission", ActuatorState(self.now, flags, position, velocity, (tolerance, 0.0), (force,)))
 
