@@ -78,7 +78,7 @@ class Avoid:
         self._link.tell(now_s, self._rest(now_s))
 
     def _halt(self, now_s: float) -> None:
-        self._drive.post("avoid", ActuatorState(now_s))
+        self._drive.stop("avoid", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
 
     def _senses(self, now_s: float, data: tuple[float, ...]) -> AvoidSenses:
         oldest_s = now_s - self._parameters.pose_stale_s

@@ -63,11 +63,10 @@ class SonarRing:
 
 def sonar_code(x_m: float, y_m: float, outline: Outline) -> LinkStatus:
     """3, 4 or 5: whether an echo at (x, y) lies in front of, behind, or beside the outline."""
-    if x_m > outline.front_m or (abs(y_m) <= outline.side_m and x_m > 0.0):
-        return LinkStatus.SONAR_FRONT
-    if x_m < -outline.back_m or abs(y_m) <= outline.side_m:
-        return LinkStatus.SONAR_BACK
-    return LinkStatus.SONAR_SIDES
+    ahead_m, aside_m = max(x_m - outline.front_m, -outline.back_m - x_m), abs(y_m) - outline.side_m
+    if aside_m > ahead_m:
+        return LinkStatus.SONAR_SIDES
+    return LinkStatus.SONAR_FRONT if x_m > 0.0 else LinkStatus.SONAR_BACK
 
 
 def where_word(x_m: float, y_m: float) -> str:

@@ -13,8 +13,8 @@ FLOOR_M = 0.03  # … but never nearer than this
 EXACT_M = 0.002
 DEEP_INSIDE_M = -0.1  # points deeper inside the outline are the robot itself
 BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve for slopes and worn brakes
-STANDSTILL_MPS = 0.01  # slower than this is not worth the motors' while
-STANDSTILL_RADPS = 0.02
+STANDSTILL_MPS = 0.02  # slower than this is not worth the motors' while
+STANDSTILL_RADPS = 0.04
 
 
 @kernel

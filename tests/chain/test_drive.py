@@ -277,11 +277,11 @@ def test_the_car_drives_curves_and_its_limits_hold() -> None:
 
 def test_a_text_is_written_once_when_a_state_begins() -> None:
     bench = Bench()
-    bench.echo(0.9, *FRONT)
+    bench.echo(0.5, *FRONT)
     bench.order(10, (0.9, 0.0))
     bench.run(0.1)
     first = bench.drive.status(0.0).text
-    assert first.startswith("echo 0.9")
-    bench.echo(0.7, *FRONT)
+    assert first.startswith("echo 0.4")
+    bench.echo(0.3, *FRONT)
     bench.run(0.1)
     assert bench.drive.status(0.0).text is first

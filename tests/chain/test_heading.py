@@ -62,6 +62,7 @@ def test_it_comes_back_to_the_line_it_was_pushed_off(direction: float) -> None:
 
 def test_a_new_target_begins_a_new_line() -> None:
     line = Line()
+    line.error_rad(0.0, 0.0, 0.0)
     for k in range(10):
         line.error_rad(0.0, 0.1, 0.05 * k)
     assert line.offset_m > 0.02
