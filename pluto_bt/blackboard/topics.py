@@ -68,7 +68,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic("car/speed",                         SpeedState,    "speed",     0.2,   1.0,  "wheel speed, unsigned"),
     Topic("Localization/Dead-Reckoning",       Pose,          "local",     0.02,  0.2,  "interface 0: dead reckoning since the start, never jumps", history=64),
     Topic("Localization/Laser_Dead-Reckoning", LaserPose,     "local",     0.2,   0.8,  "interface 1: pose of the laser at the latest scan; covariance since the scan before"),
-    Topic("Localization/Post_Pose",            Pose,          "pose",      0.0,   0.0,  "interface 2: improved poses; setter < 0 = robot pose, else laser pose"),
+    Topic("Localization/Post_Pose",            Pose,          "local",     0.0,   0.0,  "interface 2: the improved pose accepted last; setter < 0 = robot pose, else laser pose"),
     Topic("Localization/Pose",                 Pose,          "local",     0.02,  0.2,  "interface 3: 0 adjusted by 2", history=64),
     Topic("Localization/Laser_Pose",           LaserPose,     "local",     0.2,   0.8,  "interface 4: 1 adjusted by 2"),
     Topic("drive/command",                     ActuatorState, "drive",     0.0,   0.0,  "the command the drive accepted last"),

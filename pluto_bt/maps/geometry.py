@@ -44,5 +44,7 @@ def transform_points(pose_ab: Pose, points_b_m: ArrayLike) -> NDArray[np.float64
     """(n, 2) points given in frame b, seen from a: a new (n, 2) array. No points give no points."""
     points = np.asarray(points_b_m, dtype=np.float64).reshape(-1, 2)
     cos, sin = math.cos(pose_ab[2]), math.sin(pose_ab[2])
-    moved: NDArray[np.float64] = points @ np.array(((cos, sin), (-sin, cos))) + pose_ab[:2]
+    moved = np.zeros_like(points)  # written out, not as a matrix product: BLAS does not promise the same bits everywhere
+    moved[:, 0] = pose_ab[0] + cos * points[:, 0] - sin * points[:, 1]
+    moved[:, 1] = pose_ab[1] + sin * points[:, 0] + cos * points[:, 1]
     return moved

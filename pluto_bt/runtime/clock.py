@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import itertools
+import threading
 import time
 from collections.abc import Callable
 from typing import Protocol
@@ -79,11 +80,15 @@ class MonotonicClock:
 
     def __init__(self, speed: float = 1.0) -> None:
         self._start_ns = time.monotonic_ns()
-        self._speed = speed
+        self.speed = speed
+
+    def restart(self) -> None:
+        """Count from now: the time that setting up took does not belong to the run."""
+        self._start_ns = time.monotonic_ns()
 
     def now_ns(self) -> int:
         """Nanoseconds since the start of the run."""
-        return int((time.monotonic_ns() - self._start_ns) * self._speed)
+        return int((time.monotonic_ns() - self._start_ns) * self.speed)
 
     def now_s(self) -> float:
         """Seconds since the start of the run."""
@@ -93,3 +98,8 @@ class MonotonicClock:
 def wall_ns() -> int:
     """The wall's monotonic nanoseconds, for measuring and for the watchdog; never for decisions that a trace holds."""
     return time.perf_counter_ns()
+
+
+def wait(event: threading.Event, seconds: float) -> bool:
+    """Wait for `event` at most `seconds` of the wall; True if it came. The one place where the main thread waits."""
+    return event.wait(seconds)

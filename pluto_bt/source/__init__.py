@@ -6,5 +6,6 @@ It imports nothing of the project.
 """
 
 from pluto_bt.source.faults import Fault, Faults, InputError, Place, PlutoError, did_you_mean
+from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 
-__all__ = ["Fault", "Faults", "InputError", "Place", "PlutoError", "did_you_mean"]
+__all__ = ["Fault", "Faults", "InputError", "Place", "PlutoError", "XmlAttribute", "XmlElement", "did_you_mean", "read_xml", "read_xml_file"]

@@ -95,6 +95,7 @@ class Faults:
 
     def _add(self, place: Place, severity: Severity, code: str, message: str, expected: str, found: str, mend: str) -> None:
         if len(self._faults) < self.LIMIT:
+            message, expected, found, mend = _short(message), _short(expected), _short(found), _short(mend)
             self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
 
     def extend(self, faults: Iterable[Fault]) -> None:
@@ -129,13 +130,20 @@ def fail(place: Place, code: str, message: str, *, expected: str = "", found: st
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """'did you mean "goal"?' for the nearest known word, or "" if none is near."""
+    if len(word) > 100:
+        return ""
     by_lower = {name.lower(): name for name in known}
     near = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
     return f'did you mean "{by_lower[near[0]]}"?' if near else ""
 
 
+def _short(text: str, most: int = 600) -> str:
+    """A report quotes the input, which may hold a word of megabytes."""
+    return text if len(text) <= most else text[: most - 1] + "…"
+
+
 def _window(line: str, column: int, width: int = 150) -> tuple[str, int]:
     """The part of a long line around the column, tabs and control characters shown as blanks; and the column in it."""
-    clean = "".join(c if c.isprintable() else " " for c in line)
-    start = max(0, column - 1 - width // 2) if len(clean) > width else 0
-    return clean[start : start + width].rstrip(), column - start
+    start = max(0, column - 1 - width // 2) if len(line) > width else 0
+    clean = "".join(c if c.isprintable() else " " for c in line[start : start + width])
+    return clean.rstrip(), column - start

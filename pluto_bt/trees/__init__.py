@@ -1,0 +1,15 @@
+"""Missions: BehaviorTree.CPP v4 XML on py_trees.
+
+    from pluto_bt.trees import load_mission, MissionError, TickError
+    mission = load_mission(text_or_path, nodes=[MyLeaf], clock=clock, blackboard={"n": 3}, enums={"RED": 1})
+    mission.tick_once()
+
+`engine/` ticks, `controls/`, `decorators/` and `leaves/` are the nodes, `script/` the language of conditions, `loader/` reads files,
+`dump/` draws.
+"""
+
+from pluto_bt.trees.engine.errors import MissionError, TickError
+from pluto_bt.trees.loader.load import check_mission, load_mission, plan_mission
+from pluto_bt.trees.mission import Mission
+
+__all__ = ["Mission", "MissionError", "TickError", "check_mission", "load_mission", "plan_mission"]

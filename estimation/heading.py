@@ -1,0 +1,78 @@
+"""Where the heading of dead reckoning comes from: a gyro's integrated theta, an absolute orientation sensor, or the wheels.
+
+All three give the turn of one step. The wheels take over while the sensor is missing, and the heading never jumps when it comes back.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Protocol
+
+from estimation.se2 import wrap_angle
+
+
+class HeadingSource(Protocol):
+    """Turns what wheels and sensor say into the turn of one step."""
+
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None) -> tuple[float, bool]:
+        """(turn in rad, True if the sensor measured it). `theta_rad` None = the sensor says nothing now."""
+
+
+class GyroHeading:
+    """Heading since the start from an integrated gyro: its changes count, its value does not."""
+
+    __slots__ = ("_last_rad",)
+
+    def __init__(self) -> None:
+        self._last_rad: float | None = None
+
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None) -> tuple[float, bool]:
+        """The change of theta since the last step; the wheels' turn in the first step with theta, and without it."""
+        last, self._last_rad = self._last_rad, theta_rad
+        if theta_rad is None or last is None:
+            return wheel_turn_rad, False
+        return wrap_angle(theta_rad - last), True
+
+
+class AbsoluteHeading:
+    """Heading from a sensor that knows its own (3DM-GX1), turned into the robot's frame by an offset taken while standing still.
+
+    The article's `theta_offset`. A difference (after a drop-out, or noise) is made up at no more than `slew_radps`.
+    """
+
+    __slots__ = ("_averaged", "_offset_rad", "heading_rad", "slew_radps")
+
+    AVERAGED_SAMPLES = 200  # of standstill; more would hardly lower the offset's error
+
+    def __init__(self, start_rad: float, slew_radps: float = 1.0) -> None:
+        self.heading_rad = start_rad
+        self.slew_radps = slew_radps
+        self._offset_rad = 0.0
+        self._averaged = 0
+
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None) -> tuple[float, bool]:
+        """The turn that brings the heading to the sensor's, and True; without the sensor the wheels' turn, and False."""
+        if theta_rad is None:
+            self.heading_rad += wheel_turn_rad
+            return wheel_turn_rad, False
+        if self._average(wheel_turn_rad, theta_rad):
+            return wheel_turn_rad, True
+        error_rad = wrap_angle(theta_rad + self._offset_rad - self.heading_rad - wheel_turn_rad)
+        reach_rad = self.slew_radps * dt_s + abs(wheel_turn_rad)
+        turn_rad = wheel_turn_rad + math.copysign(min(abs(error_rad), reach_rad), error_rad)
+        self.heading_rad += turn_rad
+        return turn_rad, True
+
+    def _average(self, wheel_turn_rad: float, theta_rad: float) -> bool:
+        """Improve the offset while the robot has not turned yet. False once that is over."""
+        seen_rad = wrap_angle(self.heading_rad - theta_rad)
+        if self._averaged == 0:
+            self._offset_rad, self._averaged = seen_rad, 1
+            self.heading_rad += wheel_turn_rad
+            return True
+        if wheel_turn_rad != 0.0 or self._averaged >= self.AVERAGED_SAMPLES:
+            self._averaged = self.AVERAGED_SAMPLES
+            return False
+        self._averaged += 1
+        self._offset_rad += wrap_angle(seen_rad - self._offset_rad) / self._averaged
+        return True

@@ -1,0 +1,47 @@
+"""CarGoTo: the car's own goto, by steering towards the goal in rounds."""
+
+from __future__ import annotations
+
+import math
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.stepped_leaf import SteppedLeaf, speed_of
+from pluto_bt.skills.car_goto import REACHED, CarGoto, CarState
+from pluto_bt.skills.car_steering import heading_deg
+from pluto_bt.skills.map_area import MapArea
+
+
+class CarGoTo(SteppedLeaf):
+    """Drives the car to `goal` (x;y, the same in car and world frame). Needs an accepted marker where the platform has the camera."""
+
+    NEEDS_MARKER = True
+    INPUT_PORTS = {
+        "goal": Port(tuple[float, float], True, "where to", unit="m"),
+        "tolerance_m": Port(float, False, "nearer counts as reached", 1.0, unit="m", ge=0.01),
+        **MOTION_INPUTS,
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def prepare(self, robot: Robot) -> Status | None:
+        """A goal outside the map is refused before anything moves."""
+        x, y = self.get_input("goal")
+        area = MapArea.of(robot.map)
+        if not (math.isfinite(x) and math.isfinite(y)) or not area.has_point(x, y):
+            return self.fail("outside-map", f"goal {x:g};{y:g} is outside the mapped area")
+        self._skill = CarGoto(x, y, float(self.get_input("tolerance_m")), area.has_line)
+        return None
+
+    def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
+        """One step of the skill."""
+        x, y, theta = pose
+        order = self._skill.step(CarState(x, y, heading_deg(theta), speed_of(robot)))
+        if order.ended == REACHED:
+            return self.succeed(order.text)
+        if order.ended:
+            return self.fail(order.ended, order.text)
+        self.steer(robot, order.steering_percent)
+        return self.wait(f"{math.hypot(self._skill.x_m - x, self._skill.y_m - y):.2f} m to go, round {self._skill.rounds}")

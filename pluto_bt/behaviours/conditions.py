@@ -1,0 +1,135 @@
+"""Conditions on the robot: SUCCESS if it is so, FAILURE if not, or if it cannot be told (no robot, no value, value too old)."""
+
+from __future__ import annotations
+
+import math
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot, pose_of
+from pluto_bt.blackboard.codes import GotoStatus
+from pluto_bt.blackboard.messages import BatteryState, BumperState, FVectorState, Pose
+from pluto_bt.skills.map_area import MapArea
+
+
+class Condition(Leaf):
+    """Answers at once."""
+
+    KIND = "Condition"  # for `pluto nodes` and Groot2
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """(is it so, a short text)."""
+        raise NotImplementedError
+
+    def update(self) -> Status:
+        """SUCCESS or FAILURE."""
+        robot = self.robot
+        if robot is None:
+            return self.fail("not-connected", "no robot")
+        is_so, self.feedback_message = self.ask(robot)
+        self.reason = ""
+        return Status.SUCCESS if is_so else Status.FAILURE
+
+
+class IsAt(Condition):
+    """The robot is within `tolerance_m` of a point of the map."""
+
+    INPUT_PORTS = {
+        "goal": Port(tuple[float, float], True, "the point", unit="m"),
+        "tolerance_m": Port(float, False, "how near", 0.3, unit="m", ge=0.0),
+    }
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By interface 3."""
+        pose, goal = pose_of(robot), self.get_input("goal")
+        if pose is None:
+            return False, "no pose"
+        distance_m = math.hypot(goal[0] - pose[0], goal[1] - pose[1])
+        return distance_m <= float(self.get_input("tolerance_m")), f"{distance_m:.2f} m away"
+
+
+class IsStuck(Condition):
+    """The last goto ended stuck."""
+
+    INPUT_PORTS = NO_PORTS
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By motion's status."""
+        status = robot.newest("motion/status")
+        if not isinstance(status, FVectorState) or robot.is_stale("motion/status"):
+            return False, "no status"
+        return status.element[1] == GotoStatus.STUCK, status.reason
+
+
+class BumperPressed(Condition):
+    """A bumper is pressed."""
+
+    INPUT_PORTS = {"which": Port(str, False, "which panel", "any", choices=("any", "front", "back"))}
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By the base's bumpers."""
+        bumper, which = robot.newest("ATRV2/Bumper"), self.get_input("which")
+        if not isinstance(bumper, BumperState) or robot.is_stale("ATRV2/Bumper"):
+            return False, "no bumpers"
+        front, back = bumper.front and which != "back", bumper.back and which != "front"
+        return front or back, " ".join(word for word, is_in in (("front", bumper.front), ("back", bumper.back)) if is_in) or "open"
+
+
+class BatteryAbove(Condition):
+    """The main battery has more than `voltage_v`."""
+
+    INPUT_PORTS = {"voltage_v": Port(float, True, "the limit", unit="V")}
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By the base's voltmeter."""
+        battery = robot.newest("ATRV2/Battery")
+        if not isinstance(battery, BatteryState) or robot.is_stale("ATRV2/Battery"):
+            return False, "no voltage"
+        return battery.voltage_v > float(self.get_input("voltage_v")), f"{battery.voltage_v:.1f} V"
+
+
+class PoseQualityAbove(Condition):
+    """The pose is known well enough. Quality is 1 / (1 + s), s being the largest standard deviation of the position in metres:
+    1 = exact, 0.5 = one metre."""
+
+    INPUT_PORTS = {"quality": Port(float, False, "the limit", 0.5, ge=0.0, le=1.0)}
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By the covariance of interface 3."""
+        pose = robot.newest("Localization/Pose")
+        if not isinstance(pose, Pose) or robot.is_stale("Localization/Pose"):
+            return False, "no pose"
+        quality = 1.0 / (1.0 + position_sigma_m(pose))
+        return quality > float(self.get_input("quality")), f"quality {quality:.2f}"
+
+
+def position_sigma_m(pose: Pose) -> float:
+    """The largest standard deviation of the position in any direction: the root of the larger eigenvalue of its 2 × 2 covariance."""
+    xx, xy, yy = pose.covariance[0], pose.covariance[1], pose.covariance[4]
+    return math.sqrt(max(0.0, 0.5 * (xx + yy) + math.hypot(0.5 * (xx - yy), xy)))
+
+
+class InsideArea(Condition):
+    """The robot's centre is inside an area of the map."""
+
+    INPUT_PORTS = {"area": Port(str, True, "id of the area")}
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By interface 3."""
+        pose, wanted = pose_of(robot), self.get_input("area")
+        areas = () if robot.map is None else robot.map.areas
+        polygons = tuple(tuple((float(x), float(y)) for x, y in area.points) for area in areas if area.id == wanted)
+        if not polygons:
+            return False, f'no area "{wanted}" in the map'
+        if pose is None:
+            return False, "no pose"
+        is_in = MapArea(polygons).has_point(pose[0], pose[1])
+        return is_in, "inside" if is_in else "outside"

@@ -1,0 +1,51 @@
+"""GoTo: straight to a point with simple avoidance (T = 2)."""
+
+from __future__ import annotations
+
+import math
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot, pose_of
+from pluto_bt.blackboard.codes import CommandType, GotoStatus
+
+
+class GoTo(MotionLeaf):
+    """Drives to `goal` in the frame of Localization/Pose. Fails with `stuck` when avoidance comes no nearer."""
+
+    INPUT_PORTS = {
+        "goal": Port(tuple[float, float], True, "where to", unit="m"),
+        "force": Port(float, False, "weight of the goal: above 1 avoidance is weaker, below 1 stronger", 1.0, ge=0.0),
+        "tolerance_m": Port(float, False, "how near counts as reached", 0.3, unit="m", ge=0.01),
+        **MOTION_INPUTS,
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def begin(self, robot: Robot) -> Status | None:
+        """One command; goto refreshes itself."""
+        self._goal: tuple[float, float] = self.get_input("goal")
+        if not all(map(math.isfinite, self._goal)):
+            return self.fail("bad-command", f"goal {self._goal} is no place")
+        turn_radps = math.radians(robot.platform.limits.max_turn_rate_dps)
+        velocity = (self.max_speed_mps(robot), turn_radps)
+        self.post(robot, CommandType.GOTO, self._goal, velocity, float(self.get_input("tolerance_m")), float(self.get_input("force")))
+        return None
+
+    def follow(self, robot: Robot) -> Status:
+        """Reached, stuck, or on the way."""
+        status = self.chain_status(robot)
+        if status is not None and status.element[1] == GotoStatus.REACHED:
+            return self.succeed(self._to_go(robot))
+        if status is not None and status.element[1] == GotoStatus.STUCK:
+            return self.fail("bumper" if status.element[0] in (1, 2) else "stuck", status.text)
+        trouble = self.chain_trouble(robot, status)
+        if trouble is not None:
+            return trouble
+        waiting = status.text if status is not None and status.reason else ""
+        return self.wait(f"{self._to_go(robot)}; {waiting}" if waiting else self._to_go(robot))
+
+    def _to_go(self, robot: Robot) -> str:
+        pose = pose_of(robot)
+        return "no pose" if pose is None else f"{math.hypot(self._goal[0] - pose[0], self._goal[1] - pose[1]):.2f} m to go"

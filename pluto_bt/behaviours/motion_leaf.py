@@ -1,0 +1,157 @@
+"""The life of every leaf that moves the robot: command, watch, let go.
+
+Letting go: whenever the leaf ends or is halted it posts zero velocity. In an inbox the newest command wins, so a motion leaf that
+follows in the same tick replaces it, and one moves on without stopping; where none follows, the robot stops.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.reasons import WAITING, sentence
+from pluto_bt.behaviours.robot import Robot, Ticket
+from pluto_bt.blackboard.messages import FVectorState, Pair
+
+AVOIDANCE: Final = {"none": 0, "sonar": 1, "laser": 2, "both": 3}  # A of cmdFlags = 10*A + T
+PAUSE_S: Final = 0.5  # a longer gap between two ticks: the mission was paused
+ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
+
+MOTION_INPUTS: Final = {
+    "avoid": Port(str, False, "which sensors slow, stop and steer", "both", choices=tuple(AVOIDANCE)),
+    "max_speed_mps": Port(float, False, "speed limit; the platform's limit stands above it", 0.5, unit="m/s", ge=0.01),
+    "timeout_s": Port(float, False, "fails with `timeout` after so long", math.inf, unit="s", ge=0.0),
+}
+MOTION_OUTPUTS: Final = {"reason": Port(str, False, "why it failed: a word of the list in docs/reasons.md; empty on success")}
+
+
+class MotionLeaf(Leaf):
+    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`."""
+
+    def initialise(self) -> None:
+        """Forget the last run; the command itself goes out in the first `update`."""
+        self._began = False
+        self._moves = False
+        self._ticket: Ticket | None = None
+        self._was_accepted = False
+        self._word, self._word_since_s = "", 0.0
+        self._start_s = self._last_s = self._posted_s = self.now_s()
+        self._timeout_s = float(self.get_input("timeout_s"))
+
+    def update(self) -> Status:
+        """One tick."""
+        robot, now_s = self.robot, self.now_s()
+        if robot is None:
+            return self.fail("not-connected", "no robot")
+        gap_s, self._last_s = now_s - self._last_s, now_s
+        if not self._began:
+            self._began = True
+            ended = self.begin(robot)
+            return self.wait("starting") if ended is None else ended
+        if gap_s > PAUSE_S:  # time in which the mission was paused does not count
+            self._start_s += gap_s
+            self.resume(robot)
+        if self.elapsed_s >= self._timeout_s:
+            return self.fail("timeout", f"{self._timeout_s:g} s are over")
+        return self.follow(robot)
+
+    def terminate(self, new_status: Status) -> None:
+        """Zero velocity, if the robot was told to move."""
+        robot = self.robot
+        if robot is not None and self._moves:
+            robot.command(0)
+        self._moves = False
+
+    def begin(self, robot: Robot) -> Status | None:
+        """Give the first command. A status ends the leaf at once."""
+        raise NotImplementedError
+
+    def follow(self, robot: Robot) -> Status:
+        """Watch, and command again where the leaf must."""
+        raise NotImplementedError
+
+    def resume(self, robot: Robot) -> None:
+        """After a pause: command again what stood before it."""
+        if self._ticket is not None:
+            c = self._ticket.command
+            self._was_accepted = False
+            self._posted_s = self.now_s()
+            self._ticket = robot.command(c.flags, c.position, c.velocity, c.acceleration[0], c.force[0])
+
+    # ---------------------------------------------------------------- for subclasses
+
+    @property
+    def elapsed_s(self) -> float:
+        """Seconds since the start, pauses left out."""
+        return self._last_s - self._start_s
+
+    def post(
+        self, robot: Robot, kind: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0
+    ) -> None:
+        """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
+        devices = robot.platform.devices
+        has = (1 if devices.sonar is not None else 0) | (2 if devices.laser is not None else 0)
+        flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
+        self._post_flags(robot, flags, position, velocity, tolerance_m, force)
+
+    def _post_flags(self, robot: Robot, flags: int, position: Pair, velocity: Pair, tolerance_m: float, force: float) -> None:
+        if self._ticket is None or self._was_accepted:  # else the time without an answer goes on
+            self._posted_s = self._last_s
+        self._moves, self._was_accepted = True, False
+        self._ticket = robot.command(flags, position, velocity, tolerance_m, force)
+
+    def max_speed_mps(self, robot: Robot) -> float:
+        """The port's limit, held within the platform's."""
+        return min(float(self.get_input("max_speed_mps")), robot.platform.limits.max_speed_mps)
+
+    def chain_status(self, robot: Robot) -> FVectorState | None:
+        """What motion says of our command, or None while it has not taken it."""
+        if self._ticket is None:
+            return None
+        status = robot.status(self._ticket)
+        self._was_accepted = self._was_accepted or status is not None
+        return status
+
+    def chain_trouble(self, robot: Robot, status: FVectorState | None) -> Status | None:
+        """FAILURE if the chain cannot carry out the command, at once or after the patience that the word deserves; else None."""
+        if self._ticket is not None and self._ticket.refused:
+            return self.fail(self._ticket.refused, "motion's inbox belongs to another")
+        if status is None:
+            if self._was_accepted:
+                return self._replaced(robot)
+            if self._last_s - self._posted_s > ACCEPT_S:
+                return self.fail("chain-stopped", "motion does not take the command")
+            return None
+        if status.reason == "bad-command":
+            return self.fail("bad-command", status.text)
+        return self._patience(_waiting_word(status), status.text)
+
+    def _replaced(self, robot: Robot) -> Status:
+        now = robot.newest("motion/status")
+        if isinstance(now, FVectorState) and now.reason == "stopped":
+            return self.fail("stopped", now.text)
+        return self.fail("cancelled", "another command took its place")
+
+    def _patience(self, word: str, text: str) -> Status | None:
+        """Let the chain wait for a while with the same word."""
+        if word != self._word:
+            self._word, self._word_since_s = word, self._last_s
+        if word and self._last_s - self._word_since_s >= WAITING[word]:
+            return self.fail(word, text or sentence(word))
+        return None
+
+
+def _waiting_word(status: FVectorState) -> str:
+    """The word for which the chain holds the robot back, if it is one that a leaf waits for; "" else."""
+    code = status.element[0]
+    if -10 in status.element:
+        return "chain-stopped"
+    if code in (1, 2):
+        return "bumper"
+    if code == 7:
+        return "laser-fatal"
+    return status.reason if status.reason in WAITING else ""

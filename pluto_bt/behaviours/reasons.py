@@ -1,0 +1,58 @@
+"""Every reason that a leaf of the library gives when it fails or waits: one word, what it means, what to do. A closed list.
+
+`docs/reasons.md` is generated from it. The links of the chain have their own words in `pluto_bt.skills.reasons`; where both mean the
+same they use the same word.
+"""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+
+class Reason(NamedTuple):
+    """What a word means, and what a person can do."""
+
+    meaning: str
+    cure: str
+
+
+REASONS: Final[dict[str, Reason]] = {
+    "bad-command": Reason("a link of the chain refused the command", "see the status text of motion, avoidance and drive"),
+    "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),
+    "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
+    "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid and drive"),
+    "command-timeout": Reason("drive had no new command for 4 s and stopped", "send commands more often, or use a leaf that refreshes its command"),
+    "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it"),
+    "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
+    "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
+    "lost": Reason("the position has become too uncertain", "bring the robot where its markers or its map can be seen"),
+    "max-time": Reason("the run has lasted as long as --max-time allows", "give it more time"),
+    "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
+    "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
+    "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
+    "odometry-stale": Reason("the base delivers no odometry", "check the base"),
+    "outside-map": Reason("the goal, or the straight way to it, leaves the mapped area", "choose a goal inside the mapped area, in straight reach"),
+    "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
+    "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
+    "stuck": Reason("goto comes no nearer to its goal", "choose a goal with a clear way, or plan the way with NavigateTo"),
+    "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
+    "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
+}
+
+WAITING: Final[dict[str, float]] = {
+    # word → seconds for which a motion leaf lets the chain wait before it fails with that word
+    "bumper": 1.0,
+    "laser-fatal": 30.0,  # the reboot takes about 20 s
+    "laser-stale": 5.0,
+    "sonar-stale": 5.0,
+    "no-pose": 3.0,
+    "odometry-stale": 3.0,
+    "chain-stopped": 1.0,
+    "stopped": 1.0,
+}
+
+
+def sentence(word: str) -> str:
+    """What the word means, or the word itself for one from a leaf of the user's own."""
+    reason = REASONS.get(word)
+    return word if reason is None else reason.meaning

@@ -1,0 +1,62 @@
+"""The robot as a leaf sees it: give a command, watch its status, read topics. `pluto_bt.modules.robot_link` implements it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair, Pose
+from pluto_bt.maps.platform import Platform
+from pluto_bt.maps.world import World
+
+
+@dataclass(frozen=True, slots=True)
+class Ticket:
+    """A command that was posted; `refused` is "" or the code of the refusal (`wrong-state`)."""
+
+    command: ActuatorState
+    refused: str = ""
+
+
+class Robot(Protocol):
+    """One robot. What it says of topics is that of the snapshot of this tick, so it is consistent."""
+
+    @property
+    def platform(self) -> Platform:
+        """The platform file."""
+
+    @property
+    def map(self) -> World | None:
+        """The a-priori map."""
+
+    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+        """Post a command to motion; within one tick the newest wins. `tolerance_m` 0 = avoidance's own."""
+
+    def status(self, ticket: Ticket) -> FVectorState | None:
+        """`motion/status`, but only while motion works on exactly this command; None before and after."""
+
+    def newest(self, topic: str) -> Message | None:
+        """The newest value, or None if nobody has written yet."""
+
+    def age_s(self, topic: str) -> float:
+        """Seconds since the value was true; infinite without a value."""
+
+    def is_stale(self, topic: str) -> bool:
+        """True if the value is missing or older than the table of topics allows."""
+
+    def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
+        """Point the laser."""
+
+    def say(self, text: str) -> None:
+        """A line for operators."""
+
+    def stop(self) -> None:
+        """Zero velocity at once; beats every command that waits."""
+
+
+def pose_of(robot: Robot) -> tuple[float, float, float] | None:
+    """(x m, y m, theta rad) of `Localization/Pose`, or None if it is missing or too old to trust."""
+    pose = robot.newest("Localization/Pose")
+    if not isinstance(pose, Pose) or robot.is_stale("Localization/Pose"):
+        return None
+    return (pose.pose[0], pose.pose[1], pose.pose[3])

@@ -1,0 +1,100 @@
+"""Leaves that decide anew every 0.1 s and post velocities (T = 0): the car's skills and turning in place."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.motion_leaf import MotionLeaf
+from pluto_bt.behaviours.robot import Robot, pose_of
+from pluto_bt.blackboard.codes import CommandType
+from pluto_bt.blackboard.messages import ActuatorState, ImuState, MarkerState, SpeedState
+from pluto_bt.skills.car_goto import STEP_S
+from pluto_bt.skills.car_steering import turn_rate
+
+GYRO_WAIT_S: Final = 90.0  # the bias takes 1000 samples, 20 s at 50 Hz, and starts again when the car is moved
+MARKER_WAIT_S: Final = 5.0
+POSE_WAIT_S: Final = 3.0
+
+
+class SteppedLeaf(MotionLeaf):
+    """Waits until it knows where the robot points, then calls `decide` every 0.1 s; early ticks change nothing."""
+
+    NEEDS_MARKER = False
+
+    def begin(self, robot: Robot) -> Status | None:
+        """Nothing moves before the first decision."""
+        self._next_step_s = self._ready_since_s = self._last_s
+        self._waits_for = ""
+        return self.prepare(robot) or self.follow(robot)
+
+    def prepare(self, robot: Robot) -> Status | None:
+        """Look at the ports. A status ends the leaf before anything moves."""
+        return None
+
+    def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
+        """One step of 0.1 s at `pose` (x m, y m, theta rad)."""
+        raise NotImplementedError
+
+    def resume(self, robot: Robot) -> None:
+        """The next step posts anyway."""
+        self._next_step_s, self._was_accepted, self._posted_s = self._last_s, False, self._last_s
+        self._ticket = None
+
+    def follow(self, robot: Robot) -> Status:
+        """A step if one is due."""
+        if self._last_s < self._next_step_s - 1e-6:
+            return Status.RUNNING
+        self._next_step_s = max(self._next_step_s + STEP_S, self._last_s + 0.5 * STEP_S)
+        trouble = None if self._ticket is None else self.chain_trouble(robot, self.chain_status(robot))
+        if trouble is not None:
+            return trouble
+        pose = pose_of(robot)
+        missing, patience_s = self._missing(robot, pose)
+        if missing or pose is None:
+            return self._stand(robot, missing, patience_s)
+        self._waits_for = ""
+        return self.decide(robot, pose)
+
+    def _missing(self, robot: Robot, pose: tuple[float, float, float] | None) -> tuple[str, float]:
+        """What is still needed before it can move, and for how long to wait for it."""
+        devices = robot.platform.devices
+        if robot.platform.body.kinematics == "ackermann" and devices.dmu is not None:  # its wheels know of no heading
+            gyro = robot.newest("dmu/state")
+            if not isinstance(gyro, ImuState) or not gyro.bias_known:
+                return "waiting for the gyro's bias", GYRO_WAIT_S
+        if self.NEEDS_MARKER and devices.marker is not None:
+            marker = robot.newest("car/marker")
+            if not isinstance(marker, MarkerState) or marker.accepted_count == 0:
+                return "waiting for an accepted marker", MARKER_WAIT_S
+        return ("waiting for a pose", POSE_WAIT_S) if pose is None else ("", 0.0)
+
+    def _stand(self, robot: Robot, missing: str, patience_s: float) -> Status:
+        if missing != self._waits_for:
+            self._waits_for, self._ready_since_s = missing, self._last_s
+        if self._last_s - self._ready_since_s >= patience_s:
+            return self.fail("no-pose", f"{missing}, {patience_s:g} s in vain")
+        if self._moves:
+            self.post(robot, CommandType.VELOCITY)
+        return self.wait(missing)
+
+    def steer(self, robot: Robot, steering_percent: float) -> None:
+        """Drive with the car's steering (percent, + = right) at the port's speed."""
+        speed_mps = self.max_speed_mps(robot)
+        self.post(robot, CommandType.VELOCITY, velocity=(speed_mps, turn_rate(speed_mps, steering_percent, robot.platform.body)))
+
+    def turn_in_place(self, robot: Robot, rate_radps: float) -> None:
+        """Turn without driving, counter-clockwise positive."""
+        limit = math.radians(robot.platform.limits.max_turn_rate_dps)
+        self.post(robot, CommandType.VELOCITY, velocity=(0.0, max(-limit, min(limit, rate_radps))))
+
+
+def speed_of(robot: Robot) -> float:
+    """How fast the wheels turn, unsigned: the car's own sensor where there is one, else the odometry."""
+    if robot.platform.devices.speed is not None:
+        speed = robot.newest("car/speed")
+        return speed.speed_mps if isinstance(speed, SpeedState) and not robot.is_stale("car/speed") else 0.0
+    raw = robot.newest("ATRV2/Drive/Raw")
+    return abs(raw.velocity[0]) if isinstance(raw, ActuatorState) and not robot.is_stale("ATRV2/Drive/Raw") else 0.0

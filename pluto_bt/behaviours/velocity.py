@@ -1,0 +1,105 @@
+"""DriveVelocity (T = 0) and HoldHeading (T = 1): leaves that refresh one command, so that drive's 4 s timeout does not fire."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
+from pluto_bt.blackboard.codes import CommandType
+from pluto_bt.blackboard.messages import ActuatorState
+
+REFRESH_S: Final = 1.0
+
+
+class RefreshedLeaf(MotionLeaf):
+    """Posts the same command every second until `duration_s` is over or `distance_m` is driven."""
+
+    def send(self, robot: Robot) -> None:
+        """Post the command."""
+        raise NotImplementedError
+
+    def begin(self, robot: Robot) -> Status | None:
+        """First post. A duration of 0 is over before anything moves."""
+        self._duration_s, self._distance_m = float(self.get_input("duration_s")), float(self.get_input("distance_m"))
+        self._from_m = _driven_m(robot)
+        self._sent_s = self.elapsed_s
+        if self._duration_s <= 0.0 or self._distance_m <= 0.0:
+            return self.succeed("nothing to drive")
+        self.send(robot)
+        return None
+
+    def resume(self, robot: Robot) -> None:
+        """Drive on."""
+        self._was_accepted, self._sent_s = True, self.elapsed_s
+        self.send(robot)
+
+    def follow(self, robot: Robot) -> Status:
+        """Over, or refresh."""
+        trouble = self.chain_trouble(robot, self.chain_status(robot))
+        if trouble is not None:
+            return trouble
+        driven_m = _driven_m(robot)
+        if self._from_m is None:
+            self._from_m = driven_m
+        way_m = 0.0 if driven_m is None or self._from_m is None else abs(driven_m - self._from_m)
+        if way_m >= self._distance_m or self.elapsed_s >= self._duration_s - 1e-6:
+            return self.succeed(f"{way_m:.2f} m driven")
+        if self.elapsed_s - self._sent_s >= REFRESH_S - 1e-6:
+            self._sent_s = self.elapsed_s
+            self.send(robot)
+        return self.wait(f"{way_m:.2f} m driven")
+
+
+def _driven_m(robot: Robot) -> float | None:
+    raw = robot.newest("ATRV2/Drive/Raw")
+    return raw.position[0] if isinstance(raw, ActuatorState) else None
+
+
+ENDS: Final = {
+    "duration_s": Port(float, False, "succeeds after so long", math.inf, unit="s", ge=0.0),
+    "distance_m": Port(float, False, "succeeds after so much way, either direction", math.inf, unit="m", ge=0.0),
+}
+
+
+class DriveVelocity(RefreshedLeaf):
+    """Drives with a speed (backwards negative) and a turn rate (counter-clockwise positive)."""
+
+    INPUT_PORTS = {
+        "speed_mps": Port(float, False, "forward speed, negative backwards", 0.0, unit="m/s"),
+        "turn_rate_dps": Port(float, False, "turn rate, counter-clockwise positive", 0.0, unit="deg/s"),
+        **ENDS,
+        **MOTION_INPUTS,
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def send(self, robot: Robot) -> None:
+        """The velocity, held within the limits; a car keeps its curvature."""
+        speed, turn = float(self.get_input("speed_mps")), math.radians(float(self.get_input("turn_rate_dps")))
+        limit, turn_limit = self.max_speed_mps(robot), math.radians(robot.platform.limits.max_turn_rate_dps)
+        share = limit / abs(speed) if abs(speed) > limit else 1.0
+        keeps_curvature = robot.platform.body.kinematics == "ackermann"
+        turn = max(-turn_limit, min(turn_limit, turn * share if keeps_curvature else turn))
+        self.post(robot, CommandType.VELOCITY, velocity=(speed * share, turn))
+
+
+class HoldHeading(RefreshedLeaf):
+    """Turns to a heading of the map (counter-clockwise from x) and holds it at a speed."""
+
+    INPUT_PORTS = {
+        "heading_deg": Port(float, True, "heading in the map, counter-clockwise from x", unit="deg"),
+        "speed_mps": Port(float, False, "forward speed", 0.0, unit="m/s"),
+        **ENDS,
+        **MOTION_INPUTS,
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def send(self, robot: Robot) -> None:
+        """Regulator mode: position[1] is the angle, velocity[0] the speed."""
+        limit = self.max_speed_mps(robot)
+        speed = max(-limit, min(limit, float(self.get_input("speed_mps"))))
+        self.post(robot, CommandType.REGULATOR, (0.0, math.radians(float(self.get_input("heading_deg")))), (speed, 0.0))

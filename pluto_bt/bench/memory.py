@@ -1,0 +1,35 @@
+"""Memory of an hour's simulated run: flat after the first minute."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pluto_bt.bench.row import BenchRow
+from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.runner import make_runner
+from pluto_bt.system import System
+
+SAMPLES_S = (60.0, 600.0, 1800.0, 3590.0)
+
+
+def resident_mb() -> float:
+    """Memory of this process in MB."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * 4096 / 1e6
+
+
+def run() -> list[BenchRow]:
+    """Patrol for an hour of simulated time."""
+    seen: dict[float, float] = {}
+
+    def look(system: System) -> None:
+        for at_s in SAMPLES_S:
+            if at_s not in seen and system.clock.now_s() >= at_s:
+                seen[at_s] = resident_mb()
+
+    request = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=1000"])
+    make_runner(read_inputs(request), max_time_s=3600.0, on_progress=look).run()
+    first = seen[SAMPLES_S[0]]
+    rows = [BenchRow("memory after a minute", first, "MB", "", "")]
+    rows += [BenchRow(f"  growth until {at_s:.0f} s", seen[at_s] - first, "MB", "flat", "") for at_s in SAMPLES_S[1:]]
+    return rows

@@ -1,0 +1,66 @@
+"""The command line. This file stays cheap: `pluto --help` must cost little more than a bare interpreter, so nothing is imported early."""
+
+from __future__ import annotations
+
+import sys
+
+COMMANDS = {
+    "run": "run a mission in a simulated world",
+    "check": "find every fault of missions, worlds, maps and platform files",
+    "tree": "show a mission's tree (ascii, unicode, dot, svg, xhtml, xml)",
+    "nodes": "list every node with its ports",
+    "new": "write a first mission or leaf to start from",
+    "ps": "show the modules of a running robot",
+    "shell": "talk to a running robot: stop, goto X Y, maketurn DEG, pose, tree",
+    "bench": "measure, and print ratios",
+}
+
+FIRST_STEPS = """\
+pluto runs missions (behaviour trees in XML) on simulated and real robots. Three things to try:
+
+  pluto run t01_first_steps.xml                            a first mission in the yard, with a summary
+  pluto run patrol.xml --port goals="8,3;13.5,3;2,3.5" --plot out.png   a patrol, drawn
+  pluto tree patrol.xml --format unicode                   what that mission is made of
+
+`pluto --help` lists all commands."""
+
+
+def help_text() -> str:
+    """What `pluto --help` prints."""
+    width = max(map(len, COMMANDS))
+    rows = "\n".join(f"  {name:<{width}}  {text}" for name, text in COMMANDS.items())
+    return f"usage: pluto COMMAND [ARGUMENTS ...]\n\n{rows}\n\n`pluto COMMAND --help` tells more; `pluto` alone prints three things to try."
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run one command; returns its exit code."""
+    args = sys.argv[1:] if argv is None else argv
+    if not args:
+        print(FIRST_STEPS)
+        return 0
+    name, rest = args[0], args[1:]
+    if name in ("-h", "--help", "help"):
+        print(help_text())
+        return 0
+    if name == "--version":
+        from pluto_bt import __version__
+
+        print(f"pluto {__version__}")
+        return 0
+    if name not in COMMANDS:
+        from pluto_bt.source import did_you_mean
+
+        print(f'pluto: no command "{name}"; {did_you_mean(name, COMMANDS) or "`pluto --help` lists them"}', file=sys.stderr)
+        return 2
+    from importlib import import_module
+
+    try:
+        code: int = import_module(f"pluto_bt.commands.{name}").main(rest)
+    except BrokenPipeError:  # the reader of our output has gone, as in `pluto nodes | head`
+        sys.stderr.close()
+        return 141
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

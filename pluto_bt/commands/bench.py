@@ -1,0 +1,37 @@
+"""`pluto bench`: the project's figures, measured on this machine, as ratios or counts in one run."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+
+from pluto_bt.commands.options import Parser
+
+BENCHES = {
+    "stack": "the whole robot in lockstep: × real time, and where the time goes",
+    "rays": "laser scans against the plain versions",
+    "sim_step": "the simulator alone, against Stage's figure and ir-sim",
+    "tick": "a tick of the tree against stock py_trees",
+    "repeat": "runs with one seed: equal traces",
+    "startup": "`pluto --help` and the first tick of a mission",
+    "memory": "memory of an hour's simulated run",
+}
+
+
+def main(argv: list[str]) -> int:
+    """Run the named benchmarks, or all; prints one line a figure."""
+    parser = Parser(prog="pluto bench", description="Measure, and print ratios. " + "; ".join(f"{name}: {text}" for name, text in BENCHES.items()))
+    parser.add_argument("name", nargs="*", metavar="NAME", help=f"one of: {', '.join(BENCHES)} (default: all)")
+    args = parser.parse_args(argv)
+    unknown = [name for name in args.name if name not in BENCHES]
+    if unknown:
+        from pluto_bt.source import did_you_mean
+
+        print(f'pluto bench: no benchmark "{unknown[0]}"; {did_you_mean(unknown[0], BENCHES) or "one of: " + ", ".join(BENCHES)}', file=sys.stderr)
+        return 2
+    for name in args.name or BENCHES:
+        print(f"{name}: {BENCHES[name]}   (repeat: pluto bench {name})")
+        for row in importlib.import_module(f"pluto_bt.bench.{name}").run():
+            value = f"{row.value:.4g} {row.unit}".rstrip()
+            print(f"  {row.name:<46} {value:>14}   {row.target:<22} {row.note}".rstrip(), flush=True)
+    return 0

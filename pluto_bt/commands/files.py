@@ -1,0 +1,43 @@
+"""Where files are looked for: as given, then among the shipped missions and worlds by name."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+from pluto_bt.source import Faults, Place, did_you_mean
+
+SHIPPED = {"mission": ("missions", (".xml",)), "world": ("sim/worlds", (".xml", ".yaml", ".map"))}
+
+
+def package_root() -> Path:
+    """The folder that holds pluto_bt, sim, drivers, estimation and missions side by side."""
+    return Path(__file__).resolve().parents[2]
+
+
+def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) -> Path | None:
+    """The path of a mission or world, or None with a fault that names the near misses. `beside`: a folder that is tried too."""
+    candidates = [Path(name)] + ([beside / name] if beside is not None else [])
+    folder, endings = SHIPPED[kind]
+    shipped = package_root() / folder
+    bare = name.removeprefix(f"{folder}/")
+    if "/" not in bare:
+        candidates += [shipped / bare] + [shipped / f"{bare}{ending}" for ending in endings]
+    for candidate in candidates:
+        if candidate.is_file():
+            return candidate
+    known = sorted(path.name for path in shipped.iterdir() if path.suffix in endings)
+    faults.error(Place(name), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}", found=name,
+                 mend=did_you_mean(Path(name).name, known))  # fmt: skip
+    return None
+
+
+def refuse_shadowed_packages() -> None:
+    """Exit if a user's own folder `sim`, `drivers`, … hides the one that belongs to pluto_bt."""
+    for package in ("sim", "drivers", "estimation", "missions"):
+        spec = find_spec(package)
+        where = Path(spec.origin).resolve().parents[1] if spec is not None and spec.origin else None
+        if where != package_root():
+            found = "nothing" if spec is None else str(spec.origin or list(spec.submodule_search_locations or ()))
+            sys.exit(f'pluto: the package "{package}" of pluto_bt is hidden by {found}; start pluto from another folder or rename that one')

@@ -1,0 +1,85 @@
+"""`pluto new`: a first mission or leaf to start from."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+from pluto_bt.commands.options import Parser
+
+MISSION = """\
+<root BTCPP_format="4" main_tree_to_execute="{name}">
+  <!-- Run it: pluto run {file} -->
+  <BehaviorTree ID="{name}">
+    <Sequence name="there and back">
+      <GoTo name="out" goal="{{place}}" timeout_s="60"/>
+      <Say text="I am there"/>
+      <GoTo name="home" goal="0;0" timeout_s="60"/>
+    </Sequence>
+  </BehaviorTree>
+  <TreeNodesModel>
+    <SubTree ID="{name}">
+      <input_port name="place" default="2;0">where to go, x;y in metres</input_port>
+    </SubTree>
+  </TreeNodesModel>
+</root>
+"""
+
+LEAF = '''\
+"""A leaf of your own. Use it: pluto run MISSION.xml --plugin {module}"""
+
+from py_trees.common import Status
+from py_trees.ports import BehaviourWithPorts
+
+from pluto_bt.behaviours.ports import Port
+
+
+class {name}(BehaviourWithPorts):
+    """Succeeds once the battery has fallen below a voltage."""
+
+    INPUT_PORTS = {{"below_v": Port(float, description="voltage to wait for", unit="V", ge=0.0)}}
+    OUTPUT_PORTS = {{"voltage_v": Port(float, required=False, description="the voltage then", unit="V")}}
+
+    def setup(self, **kwargs):
+        self.robot = kwargs["blackboard"].robot
+
+    def update(self):
+        battery = self.robot.newest("ATRV2/Battery") if self.robot else None
+        if battery is None:
+            self.feedback_message = "no battery seen yet"
+            return Status.RUNNING
+        self.feedback_message = f"{{battery.voltage_v:.1f}} V"
+        if battery.voltage_v >= self.get_input("below_v"):
+            return Status.RUNNING
+        self._set_output("voltage_v", battery.voltage_v)
+        return Status.SUCCESS
+'''
+
+
+def main(argv: list[str]) -> int:
+    """Write `NAME.xml` or `NAME.py` into the working folder; never over an existing file."""
+    parser = Parser(prog="pluto new", description="Write a first mission or leaf to start from.")
+    parser.add_argument("kind", choices=("mission", "leaf"))
+    parser.add_argument("name", metavar="NAME")
+    args = parser.parse_args(argv)
+    stem = Path(args.name).stem
+    if not re.fullmatch(r"[A-Za-z_]\w*", stem):
+        print(f'pluto new: "{args.name}" is no name; a letter first, then letters, digits and _', file=sys.stderr)
+        return 2
+    path = Path(f"{stem}.xml") if args.kind == "mission" else Path(f"{_snake(stem)}.py")
+    if path.exists():
+        print(f"pluto new: {path} exists already; nothing was written", file=sys.stderr)
+        return 2
+    text = MISSION.format(name=stem, file=path) if args.kind == "mission" else LEAF.format(name=_camel(stem), module=path.stem)
+    path.write_text(text, encoding="utf-8")
+    print(f"wrote {path}\ntry: pluto run {path}" if args.kind == "mission" else f"wrote {path}\ntry: pluto run MISSION.xml --plugin {path.stem}")
+    return 0
+
+
+def _snake(name: str) -> str:
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower()
+
+
+def _camel(name: str) -> str:
+    return "".join(word[:1].upper() + word[1:] for word in name.split("_"))

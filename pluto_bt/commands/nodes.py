@@ -1,0 +1,28 @@
+"""`pluto nodes`: every node with its ports, generated from the classes."""
+
+from __future__ import annotations
+
+import sys
+
+from pluto_bt.commands.options import Parser
+from pluto_bt.source import Faults, InputError
+
+
+def main(argv: list[str]) -> int:
+    """Print the palette as a table, or as XML for Groot2."""
+    parser = Parser(prog="pluto nodes", description="List every node with its ports.")
+    parser.add_argument("--format", choices=("table", "xml"), default="table")
+    parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes are listed too")
+    args = parser.parse_args(argv)
+    from pluto_bt.commands.missions import load_plugins
+    from pluto_bt.trees.dump import nodes_table, nodes_xml
+
+    faults = Faults()
+    load_plugins(args.plugin, faults)
+    try:
+        faults.raise_errors()
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
+    print(nodes_table() if args.format == "table" else nodes_xml())
+    return 0

@@ -1,0 +1,73 @@
+"""`pluto run`: a mission in a world, with live progress, a summary, a picture and a trace."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from pluto_bt.commands.options import Parser
+from pluto_bt.result import RunResult
+from pluto_bt.source import InputError
+
+
+def main(argv: list[str]) -> int:
+    """Run one mission; returns the exit code of DESIGN.md, section 4."""
+    from pluto_bt.commands.files import refuse_shadowed_packages
+    from pluto_bt.commands.inputs import as_faults
+
+    refuse_shadowed_packages()
+    args = _parser().parse_args(argv)
+    try:
+        result = _run(args)
+    except InputError as error:
+        print(error, file=sys.stderr)
+        result = RunResult(result="REFUSED", reason="bad-input", faults=as_faults(error))
+    if args.json:
+        print(result.as_json(), flush=True)
+    return result.exit_code
+
+
+def _parser() -> Parser:
+    from pluto_bt.commands.inputs import add_input_options
+
+    parser = Parser(prog="pluto run", description="Run a mission in a simulated world.")
+    add_input_options(parser)
+    parser.add_argument("--realtime", action="store_true", help="the same modules in threads, at the pace of the clock")
+    parser.add_argument("--speed", type=_positive, default=1.0, metavar="FACTOR", help="with --realtime: run that many times faster")
+    parser.add_argument("--max-time", type=_positive, metavar="S", help="stop after this many seconds of the run")
+    parser.add_argument("--watch", action="store_true", help="show the live tree on the terminal")
+    parser.add_argument("--plot", metavar="FILE", help="draw world, path, goals and contacts (.png or .svg)")
+    parser.add_argument("--trace", metavar="FILE.jsonl", help="write one line a tick and a command")
+    parser.add_argument("--gateway", metavar="HOST:PORT", help="serve the TCP/XML gateway (default with --realtime: 127.0.0.1:7500)")
+    parser.add_argument("--json", action="store_true", help="end with one JSON object on the last line")
+    return parser
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError("a number above 0")
+    return value
+
+
+def _run(args: argparse.Namespace) -> RunResult:
+    from pluto_bt.commands.inputs import Request, read_inputs
+    from pluto_bt.commands.outputs import check_outputs
+    from pluto_bt.commands.progress import Progress
+
+    check_outputs(args)
+    inputs = read_inputs(Request.of(args))
+    progress = Progress(sys.stderr if args.json else sys.stdout, watch=args.watch)
+    from pluto_bt.runner import make_runner
+
+    runner = make_runner(inputs, realtime=args.realtime, speed=args.speed, max_time_s=args.max_time, trace_path=args.trace, gateway=args.gateway,
+                         on_event=progress.event, on_progress=progress.show)  # fmt: skip
+    with runner.interruptible():
+        result = runner.run()
+    progress.end(result)
+    if args.plot:
+        from pluto_bt.commands.plot import draw
+
+        draw(args.plot, runner)
+        progress.line(f"picture: {args.plot}")
+    return result

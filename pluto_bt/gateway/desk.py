@@ -1,0 +1,260 @@
+"""The executive's side of the gateway: lease, stop, runs and outcomes live here, so that a killed gateway loses none of them.
+
+`urgent` is for the link's thread; everything else belongs to the thread that steps the link.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.gateway import inquiries, replies, requests
+from pluto_bt.gateway.leases import Held, Leases
+from pluto_bt.gateway.outcomes import Outcomes
+from pluto_bt.gateway.port import RefusedError, RobotPort
+from pluto_bt.gateway.replies import AnyReply, Error, LeaseState, Ok, with_id
+from pluto_bt.gateway.runs import Runs
+from pluto_bt.gateway.wire import Answer, Ask
+
+_MOVES = {"start", "resume"}
+
+
+class Desk:
+    """Answers requests, one at a time, and watches what they began."""
+
+    def __init__(self, port: RobotPort, send: Callable[[Answer], None]) -> None:
+        """`send` must be thread-safe and never block."""
+        self._port = port
+        self._send = send
+        self._leases = Leases()
+        self._outcomes = Outcomes()
+        self._runs = Runs(port, self._tell)
+        self._client_of: dict[str, int] = {}  # key -> its newest connection
+        self._key_of: dict[int, str] = {}
+        self._stopped: deque[str] = deque()
+        self.stops = 0  # counts stops, so that a request which a stop overtook is known
+
+    # the link's thread -------------------------------------------------------------------------------------------
+    def urgent(self, ask: Ask) -> bool:
+        """Do a stop at once; False if the request is none."""
+        request = ask.request
+        if not isinstance(request, requests.Stop | requests.Estop):
+            return False
+        self.stops += 1
+        reply: AnyReply = Ok(id=request.id)
+        try:
+            if isinstance(request, requests.Estop):
+                self._port.estop(_source(ask), request.reason)
+            else:
+                self._port.stop(_source(ask))
+        except Exception as error:  # the one who stops must hear that it did not work, and the link must live on
+            reply = Error(id=request.id, code="internal", text=f"the robot's stop raised {type(error).__name__}: {error}")
+        self._stopped.append(_source(ask))
+        self._send(Answer(ask.client, "stop", reply))
+        return True
+
+    # the stepping thread -----------------------------------------------------------------------------------------
+    def step(self, now_s: float) -> None:
+        """Notice stops, leases that ran out, and how the run goes on."""
+        while self._stopped:
+            self._runs.finish("cancelled", "stopped", f"{self._stopped.popleft()} stopped the robot")
+        lost = self._leases.expire(now_s)
+        if lost is not None:
+            self._lost(lost, "ran out")
+        self._runs.poll(now_s)
+
+    def handle(self, ask: Ask, stops: int, now_s: float) -> None:
+        """Answer one request; `stops` is the count of stops when it came."""
+        key = self._meet(ask)
+        lost = self._leases.expire(now_s)
+        if lost is not None:
+            self._lost(lost, "ran out")
+        try:
+            reply, later = self._answer(ask, key, stops, now_s)
+        except RefusedError as refusal:
+            reply, later = Error(code=refusal.code, text=refusal.text), []
+        except Exception as error:  # a fault of the robot's side must not take the link down
+            reply, later = Error(code="internal", text=f"{type(error).__name__}: {error}"), []
+        self._send(Answer(ask.client, "direct", with_id(reply, ask.request.id)))
+        for follow in later:
+            self._tell(key, follow)
+
+    def gone(self, client: int) -> None:
+        """A client is no more: his lease ends, unless his session has a newer connection."""
+        key = self._key_of.pop(client, None)
+        if key is None or self._client_of.get(key) != client:
+            return
+        del self._client_of[key]
+        held = self._leases.end(key)
+        if held is not None:
+            self._lost(held, "ended with his connection")
+
+    def gateway_lost(self) -> None:
+        """The gateway died: who has a named session may come back within his ttl, the others cannot."""
+        for client, key in list(self._key_of.items()):
+            if key.startswith("#"):
+                self.gone(client)
+        self._key_of.clear()
+        self._client_of.clear()
+
+    # answers -----------------------------------------------------------------------------------------------------
+    def _answer(self, ask: Ask, key: str, stops: int, now_s: float) -> tuple[AnyReply, Sequence[AnyReply]]:
+        """The direct reply and what follows it at once. Raises: RefusedError."""
+        request = ask.request
+        match request:
+            case requests.Command() | requests.Run():
+                return self._act(ask, request, key, stops, now_s)
+            case requests.Lease():
+                return self._lease(request, key, ask, now_s), []
+            case requests.MissionOp():
+                return self._mission(ask, request, key, stops), []
+            case requests.Log():
+                return Ok(), inquiries.log(self._port, request)
+        return self._simple(ask, key, now_s), []
+
+    def _simple(self, ask: Ask, key: str, now_s: float) -> AnyReply:
+        request, port = ask.request, self._port
+        match request:
+            case requests.Get():
+                return inquiries.newest(port, request.topic)
+            case requests.ShowTree():
+                return inquiries.tree(port, request.format)
+            case requests.ShowModules():
+                return replies.Modules(state=port.modules())
+            case requests.ModuleOp():
+                port.module(request.name, request.op, _source(ask))
+            case requests.Release():
+                self._require_lease(key, now_s)
+                port.release_estop(_source(ask))
+            case requests.Cancel():
+                self._cancel(request.run, key, now_s, _source(ask))
+            case _:
+                raise RefusedError("invalid", f"the executive does not answer {type(request).__name__}")
+        return Ok()
+
+    def _act(
+        self, ask: Ask, request: requests.Command | requests.Run, key: str, stops: int, now_s: float
+    ) -> tuple[AnyReply, Sequence[AnyReply]]:
+        """A command or a run: once for each id of a session, for the holder of the lease, if nothing forbids it."""
+        known = self._outcomes.find(ask.session, request)
+        if known is not None:
+            return known.direct, known.later
+        self._require_lease(key, now_s)
+        self._require_movable(stops)
+        state = self._port.mission_state().state
+        if state in ("running", "stopping"):
+            raise RefusedError("wrong-state", f'a mission is {state}; pause it first: <mission op="pause"/>')
+        reply: AnyReply
+        outcome = self._outcomes.begin(ask.session, request)
+        try:
+            if isinstance(request, requests.Run):
+                reply = replies.Ack(id=request.id, run=self._runs.start(key, request, outcome, _source(ask)))
+            else:
+                self._port.post_command(request.target, _actuator(request, now_s), _source(ask))
+                reply = Ok(id=request.id)
+        except BaseException:
+            self._outcomes.forget(ask.session, request)  # nothing was done: the same id may be tried again
+            raise
+        outcome.add(reply)
+        self._stop_again(stops, ask)
+        return reply, []
+
+    def _require_lease(self, key: str, now_s: float) -> None:
+        if not self._leases.holds(key, now_s):
+            held = self._leases.held
+            raise RefusedError("no-lease", f'the lease is held by {held.name if held else "nobody"}; acquire it first: <lease op="acquire"/>')
+
+    def _require_movable(self, stops: int) -> None:
+        reason = self._port.estop_reason()
+        if reason is not None:
+            raise RefusedError("estopped", f'the robot is latched ({reason}); the holder of the lease sends <release what="estop"/>')
+        if stops != self.stops:
+            raise RefusedError("wrong-state", "a stop overtook this request; send it again if it is still meant")
+
+    def _stop_again(self, stops: int, ask: Ask) -> None:
+        """A stop that came while we acted may have been undone by what we did: say it again."""
+        if stops != self.stops:
+            self._port.stop(_source(ask))
+
+    def _lease(self, request: requests.Lease, key: str, ask: Ask, now_s: float) -> LeaseState:
+        name = ask.name or ask.session or key
+        match request.op:
+            case "acquire":
+                self._leases.acquire(key, name, request.ttl_s, request.on_loss, now_s)
+            case "take":
+                lost = self._leases.take(key, name, request.ttl_s, request.on_loss, now_s)
+                if lost is not None:
+                    self._lost(lost, f"was taken by {name}", "preempted")
+            case "renew":
+                self._leases.renew(key, now_s)
+            case "release":
+                held = self._leases.end(key)
+                if held is None:
+                    raise RefusedError("no-lease", "expected the holder of the lease")
+        held = self._leases.held
+        if held is None:
+            return LeaseState(holder="", mine=False, epoch=0, expires_s=0.0)
+        return LeaseState(holder=held.name, mine=held.key == key, epoch=held.epoch, expires_s=max(0.0, held.until_s - now_s))
+
+    def _lost(self, held: Held, why: str, state: str = "cancelled") -> None:
+        """Do what the holder asked for when he took the lease."""
+        if held.on_loss == "continue":
+            return
+        source = f"the lease of {held.name} {why}"
+        if held.on_loss == "stop":
+            self._port.stop(source)
+        elif self._port.mission_state().state == "running":
+            self._port.mission("pause", "", "", source)
+        if self._runs.active is not None and self._runs.active.key == held.key:
+            self._runs.finish(state, state, source)
+
+    def _cancel(self, run: str, key: str, now_s: float, source: str) -> None:
+        active = self._runs.active
+        if active is None or active.run != run:
+            raise RefusedError("wrong-state", f'run "{run}" is not going on; ' + (f'"{active.run}" is' if active else "none is"))
+        if active.key != key:
+            self._require_lease(key, now_s)
+        self._runs.finish("cancelled", "cancelled", f"{source} cancelled the run")
+
+    def _mission(self, ask: Ask, request: requests.MissionOp, key: str, stops: int) -> AnyReply:
+        port = self._port
+        if request.op in _MOVES:
+            self._require_movable(stops)
+            held = self._leases.held
+            if held is not None and held.key != key:
+                raise RefusedError("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
+        if request.op == "list":
+            return replies.Mission(state=port.mission_state(), names=tuple(port.mission_names()))
+        if request.op != "state":
+            port.mission(request.op, request.name, request.text, _source(ask))
+        if request.op in _MOVES:
+            self._stop_again(stops, ask)
+        return replies.Mission(state=port.mission_state()) if request.op in ("state", "fetch") else Ok()
+
+    # who is who --------------------------------------------------------------------------------------------------
+    def _meet(self, ask: Ask) -> str:
+        """The key under which the client's lease and outcomes stand; his newest connection hears what follows."""
+        key = ask.session or f"#{ask.client}"
+        old = self._key_of.get(ask.client)
+        if old is not None and old != key:
+            self.gone(ask.client)
+        self._key_of[ask.client] = key
+        self._client_of[key] = max(ask.client, self._client_of.get(key, 0))
+        return key
+
+    def _tell(self, key: str, reply: AnyReply) -> None:
+        client = self._client_of.get(key)
+        if client is not None:
+            self._send(Answer(client, "later", reply))
+
+
+def _source(ask: Ask) -> str:
+    return ask.name or ask.session or f"client {ask.client}"
+
+
+def _actuator(request: requests.Command, now_s: float) -> ActuatorState:
+    """The command as the chain takes it, stamped with its arrival."""
+    (p0, p1), (v0, v1), (a0, a1) = request.position, request.velocity, request.acceleration
+    return ActuatorState(now_s, request.flags, (p0, p1), (v0, v1), (a0, a1), request.force)
+

@@ -1,0 +1,251 @@
+"""From a stream of bytes to complete XML elements, with every bound kept before the parser can be hurt.
+
+No socket, no thread, no clock. A fresh parser serves each message: it is fed a private root first, which makes a DOCTYPE a syntax
+error, and positions and memory end with the message. Pieces are cut behind each `>`, so that a message ends where a piece ends
+and bytes between messages never reach the parser.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from lxml import etree
+
+from pluto_bt.gateway.limits import Limits
+
+_SPACE = re.compile(rb"[ \t\r\n]*")
+_NAME_START = re.compile(rb"[A-Za-z_:\x80-\xff]")
+_DECLARATION = re.compile(
+    rb"""<\?xml\s+version\s*=\s*["']1\.[0-9]["'](?:\s+encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["'])?(?:\s+standalone\s*=\s*["'](?:yes|no)["'])?\s*\?>"""
+)
+_MARKUP_DECLARATION = re.compile(rb"<!(?:DOCTYPE|ENTITY|ELEMENT|ATTLIST|NOTATION)")
+_DECLARATION_BYTES = 256
+_ENTITY_CODES = frozenset({26, 27, 28})  # libxml2: undeclared entity (error, warning), unparsed entity
+_CODES = {81: "bad-encoding", 6: "bad-encoding", 32: "bad-encoding", 64: "restricted-xml", 114: "too-deep"}
+
+
+class FramingError(Exception):
+    """The stream cannot go on. `code` is one of the fatal codes; line and column count from 1 at the start of the stream."""
+
+    def __init__(self, code: str, text: str, line: int, column: int) -> None:
+        super().__init__(text)
+        self.code = code
+        self.text = text
+        self.line = line
+        self.column = column
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """One complete top-level element, where it began in the stream, and its bytes as they came."""
+
+    element: Any
+    line: int
+    column: int
+    raw: bytes
+
+
+class Framer:
+    """Bytes in, messages out. After an error it is spent: never feed it again."""
+
+    def __init__(self, limits: Limits) -> None:
+        self._limits = limits
+        self._line, self._column = 1, 1  # of the first byte not yet in `_raw`, or of the message's first byte
+        self._count = 0  # bytes since the last complete message
+        self._raw = bytearray()  # of the message, or of what may become one ("<", "<?xml …")
+        self._begun = False  # anything but the start of the stream is behind us
+        self._parser: Any = None
+        self._depth = 0
+        self._in_mission = False
+
+    def feed(self, data: bytes) -> Iterator[Message]:
+        """The messages that `data` completes, as they complete. Raises: FramingError."""
+        at = 0
+        while at < len(data):
+            if self._parser is None:
+                at = self._between(data, at)
+                continue
+            at, element = self._inside(data, at)
+            if element is not None:
+                yield self._complete(element)
+
+    # between messages --------------------------------------------------------------------------------------------
+    def _between(self, data: bytes, at: int) -> int:
+        """Take white space, or one byte of what opens a message; the position after it."""
+        if not self._raw:
+            end = _SPACE.match(data, at).end()  # type: ignore[union-attr]  # matches the empty string too
+            if end > at:
+                space = data[at : min(end, at + self._room())]
+                self._count += len(space)
+                self._begun = True
+                self._advance(space)
+                self._require_room(end - at - len(space))
+                return end
+        self._require_room(1)
+        self._raw += data[at : at + 1]
+        self._count += 1
+        self._decide()
+        return at + 1
+
+    def _decide(self) -> None:
+        """Whether the bytes in `_raw` open a message, are the declaration, or break the stream."""
+        head = bytes(self._raw)
+        if head[:1] != b"<":
+            raise self._foreign(head)
+        if len(head) == 1:
+            return
+        if _NAME_START.match(head, 1):
+            self._open()
+        elif head[1:2] == b"?":
+            self._declaration(head)
+        elif head[1:2] != b"!":
+            code = "bad-encoding" if head[1:2] == b"\0" else "not-well-formed"
+            raise self._error(code, f"expected the name of an element after '<', found {head[1:2]!r}")
+        elif len(head) > 2:
+            code = "not-well-formed" if head[2:3] in b"-[" else "restricted-xml"
+            raise self._error(code, "expected an element; comments and CDATA stand inside messages only, declarations (DOCTYPE, ENTITY) nowhere")
+
+    def _declaration(self, head: bytes) -> None:
+        """One XML declaration may open the stream; it is cut off."""
+        could_be = b"<?xml".startswith(head[:5]) if len(head) <= 5 else head[:5] == b"<?xml"
+        if self._begun or not could_be or (len(head) == 6 and head[5:] not in b" \t\r\n"):
+            text = "expected an element, found a processing instruction (or an XML declaration that is not the first thing sent)"
+            raise self._error("restricted-xml", text)
+        if not head.endswith(b"?>"):
+            if len(head) > _DECLARATION_BYTES:
+                raise self._error("not-well-formed", "expected '?>' at the end of the XML declaration")
+            return
+        found = _DECLARATION.fullmatch(head)
+        if not found:
+            raise self._error("not-well-formed", 'expected <?xml version="1.0" encoding="UTF-8"?>')
+        encoding = (found[1] or b"UTF-8").decode("ascii")
+        if encoding.upper() not in ("UTF-8", "US-ASCII"):
+            raise self._error("bad-encoding", f"expected encoding UTF-8, found {encoding}")
+        self._forget(head)
+
+    def _foreign(self, head: bytes) -> FramingError:
+        """The error for a byte that opens nothing, with a hint for the two usual strangers."""
+        byte = head[0]
+        if byte in (0x00, 0xFE, 0xFF) and not self._begun:
+            return self._error("bad-encoding", "expected UTF-8, found what looks like UTF-16 or UTF-32")
+        hint = ""
+        if byte == 0x16:
+            hint = "; this looks like TLS, and this port speaks plain text"
+        elif head in (b"G", b"P", b"H", b"O", b"D") and not self._begun:
+            hint = "; this is not an HTTP server"
+        shown = repr(chr(byte)) if 0x20 <= byte < 0x7F else f"byte 0x{byte:02x}"
+        return self._error("not-well-formed", f"expected '<' or white space between messages, found {shown}{hint}")
+
+    # inside a message --------------------------------------------------------------------------------------------
+    def _open(self) -> None:
+        """A message begins: give a fresh parser its private root and the bytes that waited."""
+        # huge_tree lifts libxml2's own depth limit, which is one short of ours; all sizes are bounded here.
+        self._parser = etree.XMLPullParser(
+            events=("start", "end", "pi"),
+            resolve_entities="internal",  # type: ignore[arg-type]  # the stubs know lxml 4 only
+            no_network=True,
+            load_dtd=False,
+            huge_tree=True,
+            encoding="utf-8",
+        )
+        self._parser.feed(b"<private>\n")
+        for _ in self._parser.read_events():
+            pass
+        self._begun = True
+        self._depth = 0
+        self._in_mission = False
+        self._parse(bytes(self._raw))
+
+    def _inside(self, data: bytes, at: int) -> tuple[int, Any]:
+        """Feed the parser up to the next `>`; the position after it, and the element if it is complete."""
+        self._require_room(1)
+        end = data.find(b">", at) + 1 or len(data)
+        piece = data[at : min(end, at + self._room())]
+        self._raw += piece
+        self._count += len(piece)
+        return at + len(piece), self._parse(piece)
+
+    def _parse(self, piece: bytes) -> Any:
+        """The message's element if this piece completes it."""
+        failure: etree.XMLSyntaxError | None = None
+        try:
+            self._parser.feed(piece)
+        except etree.XMLSyntaxError as error:
+            failure = error
+        done = None
+        for event, element in self._parser.read_events():
+            done = self._event(event, element)
+        if failure is not None:
+            raise self._syntax(failure)
+        return done
+
+    def _event(self, event: str, element: Any) -> Any:
+        """Keep the bounds that show at a tag; the element if it is the end of the message."""
+        if event == "pi":
+            raise self._error("restricted-xml", "expected elements and text, found a processing instruction", element.sourceline)
+        if event == "end":
+            self._depth -= 1
+            return element if self._depth == 0 else None
+        self._depth += 1
+        if self._depth == 1:
+            self._in_mission = element.tag == "mission"
+        limit = self._limits.mission_depth + 1 if self._in_mission else self._limits.depth
+        if self._depth > limit:
+            raise self._error("too-deep", f"expected at most {limit} elements inside each other", element.sourceline)
+        count = len(element.attrib) + (len(element.nsmap) if element.nsmap else 0)
+        if count > self._limits.attributes:
+            raise self._error("too-large", f"expected at most {self._limits.attributes} attributes, found {count}", element.sourceline)
+        return None
+
+    def _syntax(self, error: etree.XMLSyntaxError) -> FramingError:
+        """libxml2's complaint, under our code and at the stream's position."""
+        number = int(getattr(error, "code", 0))
+        code = _CODES.get(number, "not-well-formed")
+        if number in _ENTITY_CODES or (code == "not-well-formed" and _MARKUP_DECLARATION.search(self._raw)):
+            code = "restricted-xml"
+        text = re.sub(r", line \d+, column \d+.*", "", (error.msg or "not well-formed").strip(), flags=re.DOTALL).strip()
+        text = re.sub(r" line \d+", "", text)
+        if code == "restricted-xml":
+            text += "; no document type, entity (but the five predefined) or processing instruction may stand in a message"
+        line, column = error.position
+        return self._error(code, text, line, column)
+
+    def _complete(self, element: Any) -> Message:
+        raw = bytes(self._raw)
+        message = Message(element, self._line, self._column, raw)
+        self._parser = None
+        self._forget(raw)
+        return message
+
+    # bookkeeping -------------------------------------------------------------------------------------------------
+    def _room(self) -> int:
+        return (self._limits.mission_bytes if self._in_mission else self._limits.message_bytes) - self._count
+
+    def _require_room(self, wanted: int) -> None:
+        if wanted > self._room():
+            limit = self._limits.mission_bytes if self._in_mission else self._limits.message_bytes
+            raise self._error("too-large", f"expected a complete message within {limit} bytes")
+
+    def _forget(self, head: bytes) -> None:
+        """`head` was taken as a whole: count on from behind it."""
+        self._advance(head)
+        self._raw.clear()
+        self._count = 0
+        self._in_mission = False
+        self._begun = True
+
+    def _advance(self, taken: bytes) -> None:
+        newlines = taken.count(b"\n")
+        if newlines:
+            self._line += newlines
+            self._column = 1
+            taken = taken[taken.rindex(b"\n") + 1 :]
+        self._column += len(taken.decode("utf-8", "ignore"))
+
+    def _error(self, code: str, text: str, line: int = 0, column: int = 0) -> FramingError:
+        """An error at the parser's line and column (which begin behind the private root's line), else at the message's begin."""
+        line = max(0, line - 2)
+        return FramingError(code, text, self._line + line, (column if line else self._column + max(0, column - 1)))

@@ -1,0 +1,125 @@
+"""The gateway as the executive's scheduler sees it: a Component that keeps one gateway process alive and serves its requests."""
+
+from __future__ import annotations
+
+import os
+import socket
+import subprocess
+import sys
+
+from pluto_bt.gateway.courier import Courier
+from pluto_bt.gateway.exchange import Exchange
+from pluto_bt.gateway.limits import Limits
+from pluto_bt.gateway.listen import Address, open_listener
+from pluto_bt.gateway.port import RobotPort
+from pluto_bt.gateway.wire import Down, Farewell
+
+CLIENTS_A_PROCESS = 1 << 32
+BACKLOG_BYTES = 1 << 20
+BACK_OFF_S = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)
+STEADY_S = 30.0
+_PROGRAM = "from pluto_bt.gateway.process import main; main()"
+
+
+class GatewayLink:
+    """Listens at `address`, in a process of its own; the listening socket stays ours, so that a restart loses no port and no caller.
+
+    `listen` (or `start`) raises InputError if the address cannot be had. A gateway that dies is restarted by `step`, later each time it dies soon.
+    """
+
+    def __init__(self, port: RobotPort, address: Address, token: str = "", limits: Limits | None = None) -> None:
+        self._address = address
+        self._token = token
+        self._limits = limits or Limits()
+        self._exchange = Exchange(port, self._send)
+        self._listener: socket.socket | None = None
+        self._courier: Courier | None = None
+        self._process: subprocess.Popen[bytes] | None = None
+        self._begun_s = 0.0
+        self._died_s: float | None = None
+        self._deaths = 0
+        self.restarts = 0
+
+    @property
+    def address(self) -> Address | None:
+        """Where the gateway listens, None if it does not; with port 0 asked for, the port that was free."""
+        return Address(*self._listener.getsockname()[:2]) if self._listener else None
+
+    @property
+    def pid(self) -> int | None:
+        """The gateway process."""
+        return self._process.pid if self._process else None
+
+    def listen(self) -> None:
+        """Take the port; harmless if it is taken already. Raises: InputError (the caller decides: an asked port is exit 2, the default a warning)."""
+        if self._listener is None:
+            self._listener = open_listener(self._address)
+
+    def start(self, now_s: float) -> None:
+        """Listen and spawn the process. Raises: InputError if `listen` was not called before and the port cannot be had."""
+        self.listen()
+        if self._process is None:
+            self._spawn(now_s)
+
+    def step(self, now_s: float) -> None:
+        """Answer, publish, and look after the process."""
+        if self._listener is None:
+            return
+        if self._courier is not None and self._courier.ended:
+            self._bury(now_s)
+        if self._courier is None and self._died_s is not None and now_s >= self._died_s + self._back_off_s():
+            self.restarts += 1
+            self._spawn(now_s)
+        courier = self._courier
+        self._exchange.step(now_s, has_room=courier is not None and courier.waiting_bytes < BACKLOG_BYTES)
+
+    def stop(self) -> None:
+        """Tell the clients, end the process, free the port."""
+        if self._listener is None:
+            return
+        self._send(Farewell())
+        if self._process is not None:
+            try:
+                self._process.wait(timeout=1.0)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+        if self._courier is not None:
+            self._courier.close()
+        self._exchange.gateway_lost()
+        self._listener.close()
+        self._listener = self._courier = self._process = None
+
+    def _spawn(self, now_s: float) -> None:
+        assert self._listener is not None
+        ours, theirs = socket.socketpair()
+        # The program's own path goes along, and -P keeps the current folder out of it: a user's folder must not shadow a package.
+        path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
+        fds = (self._listener.fileno(), theirs.fileno())
+        self._process = subprocess.Popen(
+            [sys.executable, "-P", "-c", _PROGRAM, *map(str, fds)], pass_fds=fds, stdin=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": path}
+        )
+        theirs.close()
+        self._begun_s = now_s
+        self._died_s = None
+        welcome = self._exchange.welcome(self._token, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS)
+        self._courier = Courier(ours, self._exchange.receive)
+        self._courier.send(welcome)
+
+    def _bury(self, now_s: float) -> None:
+        """The process is gone, or is of no use: end it and note when."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+        self._courier = self._process = None
+        self._exchange.gateway_lost()
+        self._deaths = self._deaths + 1 if now_s - self._begun_s < STEADY_S else 1
+        self._died_s = now_s
+
+    def _back_off_s(self) -> float:
+        return BACK_OFF_S[min(self._deaths, len(BACK_OFF_S)) - 1]
+
+    def _send(self, frame: Down) -> None:
+        courier = self._courier
+        if courier is not None:
+            courier.send(frame)

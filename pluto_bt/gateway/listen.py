@@ -1,0 +1,54 @@
+"""Where the gateway listens: the address a person types, and the socket behind it."""
+
+from __future__ import annotations
+
+import ipaddress
+import socket
+from typing import NamedTuple
+
+from pluto_bt.source.faults import Place, fail
+
+DEFAULT_PORT = 7500
+BACKLOG = 128
+
+
+class Address(NamedTuple):
+    """Host and port; port 0 = any free one."""
+
+    host: str = "127.0.0.1"
+    port: int = DEFAULT_PORT
+
+    def __str__(self) -> str:
+        return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
+
+
+def parse_address(text: str) -> Address:
+    """`HOST:PORT`, `HOST` or `:PORT`, an IPv6 host in brackets. Raises: InputError."""
+    host, colon, port = text.rpartition(":") if not text.endswith("]") else (text, "", "")
+    if not colon:
+        host, port = text, str(DEFAULT_PORT)
+    if not port.isascii() or not port.isdigit() or int(port) > 65535:
+        fail(Place(file="--gateway"), "bad-address", f'bad address "{text}"', expected="HOST:PORT with a port of 0 to 65535", found=text)
+    return Address(host.strip("[]") or "127.0.0.1", int(port))
+
+
+def open_listener(address: Address) -> socket.socket:
+    """A listening socket. Raises: InputError if the address is not the loopback, does not exist, or is in use."""
+    place = Place(file="--gateway")
+    try:
+        family, _, _, _, target = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_STREAM)[0]
+    except OSError as error:
+        fail(place, "bad-address", f'unknown host "{address.host}"', found=str(error), mend="give 127.0.0.1, or an address of this machine")
+    if not ipaddress.ip_address(str(target[0]).split("%")[0]).is_loopback:
+        mend = f"listen on 127.0.0.1:{address.port} and reach it through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
+        fail(place, "not-loopback", f"the gateway does not listen on {address} without TLS and a token", expected="a loopback address", mend=mend)
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(target)
+        listener.listen(BACKLOG)
+    except OSError as error:
+        listener.close()
+        mend = "stop the other program, or give another port: --gateway 127.0.0.1:0 takes any free one"
+        fail(place, "address-in-use", f"cannot listen on {address}", found=error.strerror or str(error), mend=mend)
+    return listener

@@ -1,0 +1,105 @@
+"""What the gateway asks of the robot. The executive gives it an object of this shape; the gateway knows nothing else of him."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Literal, NamedTuple, Protocol
+
+import msgspec
+
+from pluto_bt.blackboard.messages import ActuatorState, Event, Message, MissionState, ModulesState
+from pluto_bt.source import PlutoError
+
+OnLoss = Literal["stop", "pause", "continue"]
+
+
+class RefusedError(PlutoError):
+    """A request that is understood and not granted. `code` is one of the codes of PROTOCOL.md that are not fatal."""
+
+    def __init__(self, code: str, text: str) -> None:
+        super().__init__(text)
+        self.code = code
+        self.text = text
+
+
+class Newest(NamedTuple):
+    """A topic's newest value, its sequence number, and the run's time at which it was written."""
+
+    value: Message
+    seq: int
+    written_s: float
+
+
+class RunState(msgspec.Struct, frozen=True):
+    """How a run stands: `running`, or one of succeeded, failed, cancelled, preempted, timeout with the reason and the output ports."""
+
+    state: str = "running"
+    reason: str = ""
+    text: str = ""
+    outputs: tuple[tuple[str, str], ...] = ()
+
+
+class RobotPort(Protocol):
+    """The robot as the gateway sees it.
+
+    `stop` and `estop` are called from the link's own thread, at any moment: they must be thread-safe and return at once. All other
+    methods are called inside `GatewayLink.step`. `source` names the client for logs. Methods that can say no raise `RefusedError`.
+    """
+
+    @property
+    def name(self) -> str:
+        """The robot's name."""
+
+    def now_s(self) -> float:
+        """Seconds of the run's clock."""
+
+    def topics(self) -> Sequence[str]:
+        """Names of the topics that this run has."""
+
+    def newest(self, topic: str) -> Newest | None:
+        """The newest value of a topic, None before the first."""
+
+    def events_after(self, seq: int) -> Sequence[tuple[int, Event]]:
+        """Events with a sequence number above `seq`, oldest first."""
+
+    def stop(self, source: str) -> None:
+        """Zero velocity at once; a running mission pauses. Thread-safe."""
+
+    def estop(self, source: str, reason: str) -> None:
+        """As stop, latched until released. Thread-safe."""
+
+    def release_estop(self, source: str) -> None:
+        """Unlatch; nothing moves by that."""
+
+    def estop_reason(self) -> str | None:
+        """Why the robot is latched, None if it is not."""
+
+    def post_command(self, target: str, command: ActuatorState, source: str) -> None:
+        """Give a command to a link of the chain (`motion`, `avoidance`, `drive`) or to the `wrist`. Raises: RefusedError."""
+
+    def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
+        """Start one node or library tree; the run's id. Deadline 0 = none. A run that goes on is preempted by it. Raises: RefusedError."""
+
+    def run_state(self, run: str) -> RunState:
+        """How a run that `run_node` started stands."""
+
+    def cancel(self, run: str, reason: str) -> None:
+        """End a run with zero velocity; harmless if it is over."""
+
+    def mission_state(self) -> MissionState:
+        """The mission; state `idle` if there is none. A run of `run_node` is no mission."""
+
+    def mission_names(self) -> Sequence[str]:
+        """Missions that can be loaded by name."""
+
+    def mission(self, op: str, name: str, text: str, source: str) -> None:
+        """Do `load`, `check`, `start`, `pause`, `resume`, `abort` or `fetch`. Raises: RefusedError."""
+
+    def tree_text(self, format: str) -> str:
+        """The tree drawn as `ascii` or `dot`; "" if there is none."""
+
+    def modules(self) -> ModulesState:
+        """Every module of the run."""
+
+    def module(self, name: str, op: str, source: str) -> None:
+        """Start or stop a module. Raises: RefusedError."""

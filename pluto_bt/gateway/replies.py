@@ -1,0 +1,247 @@
+"""What the server says: one struct a message, the same on the wire between the processes, and its XML line.
+
+`id` is that of the request it answers ("" = it had none). The error codes are those of PROTOCOL.md, section Errors.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import msgspec
+import msgspec.structs
+
+from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, NodeState
+from pluto_bt.gateway.xml_text import Attribute, element, escape
+
+# fmt: off
+FATAL_CODES = ("not-well-formed", "restricted-xml", "bad-encoding", "too-large", "too-deep", "rate-limit", "slow-consumer", "timeout",
+               "too-many-connections", "unsupported-version", "unauthorised", "shutdown")
+CODES = ("invalid", "unknown-element", "unknown-topic", "unknown-node", "unknown-param", "unknown-module", "no-value", "bad-value", "out-of-range",
+         "read-only", "no-lease", "lease-held", "wrong-state", "conflict", "estopped", "bad-mission", "busy", "internal")
+# fmt: on
+RUN_FINAL = ("succeeded", "failed", "cancelled", "preempted", "timeout")
+
+
+class Reply(msgspec.Struct, frozen=True, kw_only=True, tag=True, gc=False):
+    """Root of all replies."""
+
+    id: str = ""
+
+
+class Hello(Reply, frozen=True, kw_only=True):
+    """Who answers, and what he can do."""
+
+    robot: str
+    session: str
+    time_s: float
+    capabilities: tuple[str, ...]
+
+
+class Pong(Reply, frozen=True, kw_only=True):
+    """The client's `t` back, and the run's clock."""
+
+    t: str
+    time_s: float
+
+
+class Ok(Reply, frozen=True, kw_only=True):
+    """Done; `text` says more where there is more to say."""
+
+    text: str = ""
+
+
+class Error(Reply, frozen=True, kw_only=True):
+    """RefusedError: `text` names what was expected and found."""
+
+    code: str
+    text: str
+    line: int = 0
+    column: int = 0
+
+    @property
+    def fatal(self) -> bool:
+        """True if the connection closes behind it."""
+        return self.code in FATAL_CODES
+
+
+class LeaseState(Reply, frozen=True, kw_only=True):
+    """Who may drive; `expires_s` = seconds left, `epoch` counts the holders."""
+
+    holder: str
+    mine: bool
+    epoch: int
+    expires_s: float
+
+
+class Ack(Reply, frozen=True, kw_only=True):
+    """A run has begun."""
+
+    run: str
+
+
+class Progress(Reply, frozen=True, kw_only=True):
+    """A run goes on."""
+
+    run: str
+    state: str
+    text: str
+
+
+class Result(Reply, frozen=True, kw_only=True):
+    """A run is over; `outputs` are the node's output ports."""
+
+    run: str
+    state: str
+    reason: str
+    text: str
+    outputs: tuple[tuple[str, str], ...] = ()
+
+
+class Mission(Reply, frozen=True, kw_only=True):
+    """The mission's state, and for `list` the missions there are."""
+
+    state: MissionState
+    names: tuple[str, ...] = ()
+
+
+class Tree(Reply, frozen=True, kw_only=True):
+    """The tree now: as nodes, or drawn as text."""
+
+    tick: int
+    format: str
+    text: str = ""
+    nodes: tuple[NodeState, ...] = ()
+
+
+class Modules(Reply, frozen=True, kw_only=True):
+    """Every module of the run."""
+
+    state: ModulesState
+
+
+class LogLine(Reply, frozen=True, kw_only=True):
+    """One event for operators."""
+
+    event: Event
+    seq: int
+
+
+class Item(msgspec.Struct, frozen=True):
+    """One thing that exists: its attributes, its fields (name, type, unit), and what it means."""
+
+    attributes: dict[str, str]
+    fields: tuple[tuple[str, str, str], ...]
+    doc: str
+
+
+class Description(Reply, frozen=True, kw_only=True):
+    """What exists."""
+
+    items: tuple[Item, ...]
+
+
+class Value(Reply, frozen=True, kw_only=True):
+    """The answer to `get`: the newest value, packed as `wire.pack_value` does."""
+
+    topic: str
+    seq: int
+    age_s: float
+    payload: bytes
+
+
+AnyReply: TypeAlias = (
+    Hello | Pong | Ok | Error | LeaseState | Ack | Progress | Result | Mission | Tree | Modules | LogLine | Description | Value
+)
+
+
+def with_id(reply: AnyReply, id: str) -> AnyReply:
+    """The same reply to another request."""
+    return msgspec.structs.replace(reply, id=id)
+
+
+def row(tag: str, struct: msgspec.Struct, body: str = "") -> str:
+    """A struct as one element, a field an attribute."""
+    fields: dict[str, Attribute] = {name: getattr(struct, name) for name in struct.__struct_fields__}
+    return element(tag, fields, body)
+
+
+def _error(reply: Error) -> str:
+    place: dict[str, Attribute] = {"line": reply.line, "col": reply.column} if reply.line else {}
+    return _with_id(reply, "error", {"code": reply.code, **place, "fatal": reply.fatal}, escape(reply.text))
+
+
+def _with_id(reply: Reply, tag: str, attributes: dict[str, Attribute], body: str = "") -> str:
+    return element(tag, {"id": reply.id, **attributes} if reply.id else attributes, body)
+
+
+def _mission(reply: Mission) -> str:
+    state = reply.state
+    shown: dict[str, Attribute] = {"name": state.name, "run": state.run, "state": state.state, "reason": state.reason, "step": state.step}
+    return _with_id(reply, "mission_state", shown, "".join(element("mission", {"name": name}) for name in reply.names))
+
+
+def _tree(reply: Tree) -> str:
+    body = "".join(row("node", node) for node in reply.nodes) or escape(reply.text)
+    return _with_id(reply, "tree", {"tick": reply.tick, "format": reply.format}, body)
+
+
+def _event(reply: LogLine) -> str:
+    event = reply.event
+    shown: dict[str, Attribute] = {"level": event.level, "code": event.code, "source": event.source, "seq": reply.seq}
+    shown["time"] = _seconds(event.stamp_s)
+    return _with_id(reply, "event", shown, escape(event.text))
+
+
+def _description(reply: Description) -> str:
+    items = []
+    for item in reply.items:
+        fields = "".join(element("field", {"name": name, "type": kind, "unit": unit}) for name, kind, unit in item.fields)
+        items.append(element("item", dict(item.attributes), fields + element("doc", {}, escape(item.doc))))
+    return _with_id(reply, "description", {}, "".join(items))
+
+
+def encode(reply: AnyReply) -> bytes:
+    """The reply as one line of XML (`Value` has its own encoder: `values.value_line`)."""
+    return (_text(reply) + "\n").encode()
+
+
+def _text(reply: AnyReply) -> str:  # one case a message: longer than a screen of logic, but a table
+    match reply:
+        case Hello():
+            caps = "".join(element("cap", {}, escape(cap)) for cap in reply.capabilities)
+            shown: dict[str, Attribute] = {"version": "1.0", "robot": reply.robot, "session": reply.session, "time": _seconds(reply.time_s)}
+            return _with_id(reply, "hello", shown, caps)
+        case Pong():
+            return _with_id(reply, "pong", {"t": reply.t, "time": _seconds(reply.time_s)})
+        case Ok():
+            return _with_id(reply, "ok", {}, escape(reply.text))
+        case Error():
+            return _error(reply)
+        case LeaseState():
+            shown = {"holder": reply.holder, "mine": reply.mine, "epoch": reply.epoch, "expires_s": f"{reply.expires_s:.3f}"}
+            return _with_id(reply, "lease_state", shown)
+        case Ack():
+            return _with_id(reply, "ack", {"run": reply.run})
+        case Progress():
+            return _with_id(reply, "progress", {"run": reply.run, "state": reply.state, "text": reply.text})
+        case Result():
+            outs = "".join(element("out", {"name": name}, escape(value)) for name, value in reply.outputs)
+            return _with_id(reply, "result", {"run": reply.run, "state": reply.state, "reason": reply.reason, "text": reply.text}, outs)
+        case Mission():
+            return _mission(reply)
+        case Tree():
+            return _tree(reply)
+        case Modules():
+            return _with_id(reply, "modules", {}, "".join(row("module", module) for module in reply.state.modules))
+        case LogLine():
+            return _event(reply)
+        case Description():
+            return _description(reply)
+        case Value():
+            raise TypeError("a value is encoded by values.value_line")
+
+
+def _seconds(time_s: float) -> str:
+    return f"{time_s:.6f}"
+
+

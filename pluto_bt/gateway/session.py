@@ -1,0 +1,197 @@
+"""One client in the gateway: what his bytes lead to, and what he is sent. No socket, no clock: bytes and time are passed in."""
+
+from __future__ import annotations
+
+import hmac
+from typing import TYPE_CHECKING
+
+from pluto_bt.gateway import requests
+from pluto_bt.gateway.framing import Message
+from pluto_bt.gateway.newest import Newest
+from pluto_bt.gateway.port import RefusedError
+from pluto_bt.gateway.protocol import STOPS, Connection
+from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, encode, with_id
+from pluto_bt.gateway.requests import AnyRequest, Estop, Stop
+from pluto_bt.gateway.stops import Stops
+from pluto_bt.gateway.subscriptions import ALIASES, Subscriptions
+from pluto_bt.gateway.wire import Answer
+
+if TYPE_CHECKING:
+    from pluto_bt.gateway.hub import Hub
+
+OPERATORS = frozenset({"operator", "shell", "console"})
+CAPABILITIES = ("get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "modules", "describe", "log")
+
+
+class Session:
+    """A connection with what the client asked for. `receive`, `tick` and `to_send` are all that a server needs.
+
+    Args:
+        is_reserve: the connection took one of the operators' places: it must stop the robot or say hello as an operator.
+    """
+
+    def __init__(self, client: int, hub: Hub, now_s: float, *, is_reserve: bool = False) -> None:
+        self.client = client
+        self.subscriptions = Subscriptions()
+        self._hub = hub
+        self._limits = hub.limits
+        self._connection = Connection(hub.limits)
+        self._stops = Stops()
+        self._name = ""
+        self._session = ""
+        self._greeted = False
+        self._is_reserve = is_reserve
+        self._outstanding = 0
+        self._began_s = now_s
+        self._heard_s = now_s
+
+    @property
+    def is_waiting(self) -> bool:
+        """True while an answer of the executive is outstanding."""
+        return self._outstanding > 0 or self._stops.is_under_way
+
+    @property
+    def closing(self) -> bool:
+        """The connection ends: send what is left, half-close, discard input."""
+        return self._connection.closing
+
+    # from the client ---------------------------------------------------------------------------------------------
+    def receive(self, data: bytes, now_s: float) -> None:
+        """Bytes from the client."""
+        self._heard_s = now_s
+        for message in self._connection.feed(data, now_s):
+            self._take(message, now_s)
+
+    def _take(self, message: Message, now_s: float) -> None:
+        if self.closing and message.element.tag not in STOPS:
+            return
+        id = message.element.get("id", "")[:128]
+        try:
+            request = requests.parse(message)
+            if self._may_speak(request):
+                self._do(request, now_s)
+        except RefusedError as refusal:
+            self.say(Error(id=id, code=refusal.code, text=refusal.text, line=message.line, column=message.column))
+
+    def _may_speak(self, request: AnyRequest) -> bool:
+        """A stop always; else what the place and the token demand."""
+        if isinstance(request, Stop | Estop):
+            return True
+        is_hello = isinstance(request, requests.SayHello)
+        if self._is_reserve and not self._greeted and not (isinstance(request, requests.SayHello) and request.name in OPERATORS):
+            self.fail("too-many-connections", f"the last places are for operators: <stop/>, or hello with a name of {', '.join(sorted(OPERATORS))}")
+            return False
+        if self._hub.token and not self._greeted and not is_hello:
+            self.fail("unauthorised", "expected <hello token=\"…\"/> as the first message")
+            return False
+        return True
+
+    def _do(self, request: AnyRequest, now_s: float) -> None:
+        hub = self._hub
+        match request:
+            case Stop() | Estop():
+                self._stop(request)
+            case requests.SayHello():
+                self._hello(request, now_s)
+            case requests.Ping():
+                self.say(Pong(id=request.id, t=request.t, time_s=hub.run_s(now_s)))
+            case requests.Describe():
+                self.say(hub.describe(request))
+            case requests.Subscribe():
+                hub.require_topic(request.topic)
+                self.subscriptions.add(request)
+                self.say(Ok(id=request.id))
+                hub.subscribed(self, now_s)
+            case requests.Unsubscribe():
+                if not self.subscriptions.remove(request.topic):
+                    raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
+                self.say(Ok(id=request.id))
+                hub.watch()
+            case requests.Bye():
+                self._connection.close()
+            case _:
+                self._ask(request)
+
+    def _hello(self, request: requests.SayHello, now_s: float) -> None:
+        if self._greeted:
+            raise RefusedError("wrong-state", "hello is said once a connection; connect anew for another name or session")
+        if request.version.split(".")[0] != "1":
+            self.fail("unsupported-version", f'expected version 1.0, found "{request.version}"', request.id)
+            return
+        if self._hub.token and not hmac.compare_digest(request.token.encode(), self._hub.token.encode()):
+            self.fail("unauthorised", "the token is not the one this gateway was started with", request.id)
+            return
+        self._greeted = True
+        self._name, self._session = request.name, request.session
+        robot = self._hub.robot
+        self.say(Hello(id=request.id, robot=robot, session=self._session, time_s=self._hub.run_s(now_s), capabilities=CAPABILITIES))
+
+    def _stop(self, request: Stop | Estop) -> None:
+        now = self._stops.add(request)
+        if now is not None:
+            self._hub.ask(self.client, self._session, self._name, now)
+        if self._stops.is_flood:
+            self.fail("rate-limit", "a thousand stops wait for their answer; the robot is being stopped")
+
+    def _ask(self, request: AnyRequest) -> None:
+        if self._outstanding >= self._limits.outstanding:
+            raise RefusedError("busy", f"{self._outstanding} requests of this client wait for the executive; wait for their replies")
+        self._outstanding += 1
+        self._hub.ask(self.client, self._session, self._name, request)
+
+    # to the client -----------------------------------------------------------------------------------------------
+    def say(self, reply: AnyReply) -> None:
+        """A reply: never dropped."""
+        self._connection.send(encode(reply))
+
+    def fail(self, code: str, text: str, id: str = "") -> None:
+        """A fatal error."""
+        self._connection.fail(code, text, id=id)
+
+    def answer(self, answer: Answer, now_s: float) -> None:
+        """The executive's word to one of our requests."""
+        reply = answer.reply
+        if answer.lane == "stop":
+            self._stop_answered(reply)
+            return
+        if answer.lane == "direct":
+            self._outstanding -= 1
+        if isinstance(reply, Value):
+            newest = Newest(ALIASES.get(reply.topic, reply.topic), reply.seq, reply.age_s, now_s, reply.payload)
+            self._connection.send(newest.line(now_s, shown=reply.topic, id=reply.id))
+        else:
+            self.say(reply)
+
+    def _stop_answered(self, reply: AnyReply) -> None:
+        ids, following = self._stops.answered()
+        for id in ids:
+            self.say(with_id(reply, id))
+        if following is not None:
+            self._hub.ask(self.client, self._session, self._name, following)
+
+    def events(self, events: list[Newest], now_s: float) -> None:
+        """Events are lines like values, but none is dropped."""
+        flow = self.subscriptions.flow("events")
+        if flow is not None:
+            for event in events:
+                self._connection.send(event.line(now_s, id=flow.wish.id))
+
+    def to_send(self, now_s: float, room_bytes: int) -> bytes:
+        """Replies, then the values that are due and fit into `room_bytes`."""
+        out = self._connection.to_send()
+        return out if self.closing else out + self.subscriptions.take(now_s, room_bytes - len(out))
+
+    def tick(self, now_s: float, unread_bytes: int) -> None:
+        """Watch the client's manners: silence, and replies that he does not read."""
+        limits = self._limits
+        if unread_bytes > limits.backlog_bytes:
+            self.fail("slow-consumer", f"{unread_bytes} bytes of replies wait unread; expected at most {limits.backlog_bytes}")
+        elif self._hub.token and not self._greeted and now_s - self._began_s >= limits.hello_s:
+            self.fail("timeout", f"expected hello within {limits.hello_s:g} s")
+        elif now_s - self._heard_s >= limits.idle_s:
+            self.fail("timeout", f"no byte came for {limits.idle_s:g} s; send <ping/> now and then")
+
+    def next_due_s(self) -> float:
+        """When `tick` or `to_send` has something to do by time alone."""
+        due_s = min(self._heard_s + self._limits.idle_s, self.subscriptions.next_due_s())
+        return min(due_s, self._began_s + self._limits.hello_s) if self._hub.token and not self._greeted else due_s

@@ -1,0 +1,77 @@
+"""Messages of the blackboard as XML: one child a field, numbers separated by spaces, SI and radians (PROTOCOL.md, section Values)."""
+
+from __future__ import annotations
+
+from typing import Any, get_type_hints
+
+import msgspec
+import numpy as np
+
+from pluto_bt.blackboard.codes import status_name
+from pluto_bt.blackboard.messages import FVectorState, LaserScan, Message
+from pluto_bt.gateway.xml_text import Attribute, element, escape, numbers, scalar
+
+_UNITS = {"s": "s", "m": "m", "rad": "rad", "mps": "m/s", "radps": "rad/s", "mps2": "m/s^2", "v": "V", "ms": "ms"}
+_WIRE_NAMES: dict[type[Message], dict[str, str]] = {LaserScan: {"angle_min_rad": "angle_min", "angle_step_rad": "angle_step", "ranges_m": "ranges"}}
+_ROW_NAMES = {"nodes": "node", "modules": "module"}
+
+
+def body_of(value: Message) -> str:
+    """The children of `<value>` for any message."""
+    names = _WIRE_NAMES.get(type(value), {})
+    fields = [(names.get(name, name), getattr(value, name)) for name in value.__struct_fields__ if name != "stamp_s"]
+    if isinstance(value, LaserScan):
+        fields = [field for field in fields if field[0] in ("angle_min", "angle_step", "ranges")]
+    if isinstance(value, FVectorState):
+        fields = [field for field in fields if field[1] != ""]
+    body = "".join(_field(name, content) for name, content in fields)
+    return body + _statuses(value.element) if isinstance(value, FVectorState) else body
+
+
+def value_line(topic: str, seq: int, stamp_s: float, age_s: float, body: str, *, id: str = "", dropped: int = 0) -> bytes:
+    """One `<value>` line. The body serves every client; only the head is a client's own."""
+    head: dict[str, Attribute] = {"id": id} if id else {}
+    head |= {"topic": topic, "seq": seq, "stamp": f"{stamp_s:.6f}", "age": f"{max(0.0, age_s):.3f}", "dropped": dropped}
+    return (element("value", head, body) + "\n").encode()
+
+
+def fields_of(kind: type[Message]) -> tuple[tuple[str, str, str], ...]:
+    """Name on the wire, type and unit of every field, for `describe`."""
+    names = _WIRE_NAMES.get(kind, {})
+    hints = get_type_hints(kind)
+    fields = [name for name in kind.__struct_fields__ if name != "stamp_s"]
+    return tuple((names.get(name, name), _type_name(hints[name]), _unit(name)) for name in fields if not (kind is LaserScan and name == "count"))
+
+
+def _field(name: str, value: Any) -> str:
+    if isinstance(value, np.ndarray):
+        return f"<{name}>{numbers(value.tolist())}</{name}>"
+    if isinstance(value, tuple):
+        if value and isinstance(value[0], msgspec.Struct):
+            return "".join(_row(_ROW_NAMES.get(name, name), item) for item in value)
+        return f"<{name}>{numbers(value)}</{name}>"
+    return f"<{name}>{escape(scalar(value)) if isinstance(value, str) else scalar(value)}</{name}>"
+
+
+def _row(tag: str, item: msgspec.Struct) -> str:
+    return element(tag, {name: getattr(item, name) for name in item.__struct_fields__})
+
+
+def _statuses(codes: tuple[int, ...]) -> str:
+    """For people: the name of each code."""
+    return "".join(element("status", {"element": i, "code": code, "name": status_name(i, code)}) for i, code in enumerate(codes))
+
+
+def _type_name(hint: Any) -> str:
+    if hint in (int, float, bool, str):
+        return str(hint.__name__)
+    text = str(hint)
+    if "NodeState" in text or "ModuleState" in text:
+        return "rows"
+    return "ints" if "int" in text.replace("float", "") and "ndarray" not in text else "floats"
+
+
+def _unit(name: str) -> str:
+    return _UNITS.get(name.rsplit("_", 1)[-1], "") if "_" in name else ""
+
+

@@ -1,0 +1,78 @@
+"""Adapter `dmu`: the gyro with its bias removed, filtered, and theta integrated (manual, section 8.2; seed 002 for the bias)."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from drivers.records import InertialRecord
+from estimation.gyro_bias import BiasNews, GyroBias
+from estimation.inertial import InertialHeading
+from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.imu import _check, imu_state
+from pluto_bt.modules.relay import Relay
+
+
+class DmuParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Table `[dmu]` of the platform file."""
+
+    bias_samples: Annotated[int, Meta(ge=1, le=1_000_000, description="standstill samples whose mean is the gyro's bias")] = 1000
+    max_bias_spread_dps: Annotated[float, Meta(gt=0, description="largest standard deviation that passes for standing still")] = 2.0
+    filter_s: Annotated[float, Meta(ge=0, le=1, description="time constant of the low-pass on rates and accelerations")] = 0.04
+    still_speed_mps: Annotated[float, Meta(ge=0, description="speed below which the robot stands still")] = 0.01
+    still_turn_rate_dps: Annotated[float, Meta(ge=0, description="wheels' turn rate below which the robot stands still")] = 1.0
+
+
+class Dmu(Relay[InertialRecord]):
+    """`dmu/raw` as measured; `dmu/state` filtered, bias removed once it is known, stamped the filter's delay earlier."""
+
+    def __init__(self, context: Context) -> None:
+        super().__init__(context, "dmu", "dmu/raw", InertialRecord, _check, imu_state)
+        p: DmuParameters = getattr(context.platform, "dmu", None) or DmuParameters()
+        self._parameters = p
+        self._state = context.board.publisher("dmu/state", "dmu")
+        self._odometry = context.board.reader("ATRV2/Drive/Raw")
+        self._speed = context.board.reader("car/speed")
+        self._command = context.board.reader("ATRV2/Drive/Command")
+        self.bias = GyroBias(p.bias_samples, math.radians(p.max_bias_spread_dps))
+        self.heading = InertialHeading(p.filter_s)
+        self._still_turn_radps = math.radians(p.still_turn_rate_dps)
+
+    def step(self, now_s: float) -> None:
+        """Publish each sample that has arrived, both ways."""
+        for record in self.read():
+            if not self.bias.known:
+                self._tell(self.bias.add(record.turn_rates_radps[2], self._is_still()))
+            x, y, z = record.turn_rates_radps
+            bias = self.bias.bias_radps
+            rates, accelerations = self.heading.step(record.stamp_s, (x, y, z - bias), record.accelerations_mps2, record.phi_rad, record.psi_rad)
+            self._publisher.put(imu_state(record), now_s)
+            stamp_s, theta = record.stamp_s - self.heading.delay_s, self.heading.theta_rad
+            self._state.put(ImuState(stamp_s, theta, record.phi_rad, record.psi_rad, rates, accelerations, bias, self.bias.known), now_s)
+
+    def _is_still(self) -> bool:
+        """True if the wheels say so and nothing else is commanded; without any word from the wheels it is not known, so False."""
+        p, command, odometry, speed = self._parameters, self._command(), self._odometry(), self._speed()
+        if command is not None and isinstance(command.value, ActuatorState) and command.value.velocity != (0.0, 0.0):
+            return False
+        if speed is not None and isinstance(speed.value, SpeedState):
+            return speed.value.speed_mps <= p.still_speed_mps
+        if odometry is not None and isinstance(odometry.value, ActuatorState):
+            v, w = odometry.value.velocity
+            return abs(v) <= p.still_speed_mps and abs(w) <= self._still_turn_radps
+        return False
+
+    def _tell(self, news: BiasNews) -> None:
+        if news is BiasNews.KNOWN:
+            dps = math.degrees(self.bias.bias_radps)
+            self._say("info", "gyro-bias-known", "dmu", f"gyro bias {dps:.4f} deg/s from {self.bias.taken} samples at rest")
+        elif news is BiasNews.MOVED:
+            text = "the robot moved while the gyro's bias was measured: the wheels give the heading; starting again"
+            self._say("warning", "gyro-bias-refused", "dmu", text)
+        elif news is BiasNews.UNSTEADY:
+            spread = math.degrees(self.bias.spread_radps)
+            self._say("warning", "gyro-bias-refused", "dmu", f"the gyro scatters by {spread:.2f} deg/s, too much for a robot at rest; starting again")

@@ -1,0 +1,96 @@
+"""The executive as a module: ticks the mission and shows tree, mission, events and modules on the blackboard."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+
+import msgspec
+
+from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, NodeState, Pose, TreeState
+from pluto_bt.modules.context import Context
+from pluto_bt.runtime.supervision import Part
+from pluto_bt.runtime.trace import Trace
+from pluto_bt.trees.executive import Activity
+from pluto_bt.trees.executive import Executive as Core
+from pluto_bt.trees import Mission
+
+SHOW_MODULES_EVERY = 10
+
+
+class Executive:
+    """Owns `mission/state`, `tree`, `events` and `modules`; writes one trace line a tick."""
+
+    def __init__(self, context: Context) -> None:
+        board = context.board
+        self._clock = context.clock
+        self._trace: Trace = context.extras["trace"]
+        self._parts: Callable[[], tuple[Part, ...]] = context.extras["parts"]
+        self._mission = board.publisher("mission/state", "executive")
+        self._tree = board.publisher("tree", "executive")
+        self._events = board.publisher("events", "executive")
+        self._modules = board.publisher("modules", "executive")
+        self._pose = board.reader("Localization/Pose")
+        self._waiting: deque[Event] = deque()
+        self.on_event: Callable[[Event], None] = lambda event: None
+        self.core = Core(context.extras["robot"], lambda level, code, text: self.say(level, code, "mission", text))
+        self._shown: MissionState | None = None
+        self._shown_statuses = ""
+        self._steps = 0
+
+    def start(self, now_s: float) -> None:
+        """Nothing to take."""
+
+    def stop(self) -> None:
+        """Nothing to let go."""
+
+    def say(self, level: str, code: str, source: str, text: str) -> None:
+        """Queue a line for operators; any thread."""
+        self._waiting.append(Event(self._clock.now_s(), level, code, source, text))
+
+    def step(self, now_s: float) -> None:
+        """One turn of the executive, then what changed goes to the blackboard."""
+        ticked = self.core.step(now_s)
+        if ticked is not None:
+            statuses = ticked.mission.status_line()
+            self._record(ticked, statuses)
+            if statuses != self._shown_statuses:
+                self._shown_statuses = statuses
+                self._tree.put(TreeState(now_s, ticked.ticks, tuple(node_states(ticked.mission))), now_s)
+        self._show_mission(now_s)
+        if self._steps % SHOW_MODULES_EVERY == 0:
+            self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._parts())), now_s)
+        self._steps += 1
+        self.flush(now_s)
+
+    def flush(self, now_s: float) -> None:
+        """Publish the events that wait."""
+        while self._waiting:
+            event = self._waiting.popleft()
+            self._events.put(event, now_s)
+            self.on_event(event)
+
+    def _record(self, ticked: Activity, statuses: str) -> None:
+        sample = self._pose()
+        pose = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
+        self._trace.line({"t": self._clock.now_ns(), "tick": ticked.ticks, "run": ticked.number, "nodes": statuses, "pose": pose})
+
+    def _show_mission(self, now_s: float) -> None:
+        activity = self.core.mission
+        if activity is None:
+            return
+        state = MissionState(0.0, activity.mission.name, activity.number, activity.state, activity.reason, activity.mission.active_leaf())
+        if state != self._shown:
+            self._shown = state
+            self._mission.put(msgspec.structs.replace(state, stamp_s=now_s, ticks=activity.ticks), now_s)
+
+
+def node_states(mission: Mission) -> list[NodeState]:
+    """The nodes of a mission as the blackboard shows them."""
+    return [NodeState(node.path, node.type, node.name, node.depth, node.status, node.feedback, node.since_s) for node in mission.node_states()]
+
+
+def module_state(part: Part) -> ModuleState:
+    """One row of `modules`."""
+    row = part.module
+    return ModuleState(row.name, row.group, part.state, part.steps, part.failures, part.overruns, part.worst_ns / 1e6, part.error)

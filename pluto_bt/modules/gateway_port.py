@@ -1,0 +1,175 @@
+"""The robot as the gateway sees it: the executive's side of `pluto_bt.gateway.port.RobotPort`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from xml.sax.saxutils import quoteattr
+
+from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
+from pluto_bt.commands.files import SHIPPED, package_root
+from pluto_bt.gateway.port import Newest, Refused, RunState
+from pluto_bt.modules.executive import module_state
+from pluto_bt.system import System
+from pluto_bt.trees.executive import PAUSED, RUNNING, Activity
+from pluto_bt.trees import Mission, MissionError
+
+LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
+RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}
+OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
+
+
+class GatewayPort:
+    """Implements `RobotPort` over a `System`."""
+
+    def __init__(self, system: System, load: Callable[[str], Mission]) -> None:
+        self._system = system
+        self._load = load
+        self._loaded: Mission | None = None
+        self._errands: dict[str, Activity] = {}
+        self._estop: str | None = None
+
+    @property
+    def name(self) -> str:
+        """The robot's name."""
+        return self._system.options.world.robot.name
+
+    def now_s(self) -> float:
+        """Seconds of the run's clock."""
+        return self._system.clock.now_s()
+
+    def topics(self) -> Sequence[str]:
+        """Names of all topics."""
+        return [topic.name for topic in self._system.board.topics]
+
+    def newest(self, topic: str) -> Newest | None:
+        """The newest value of a topic."""
+        sample = self._system.board.newest(topic)
+        return None if sample is None else Newest(*sample)
+
+    def events_after(self, seq: int) -> Sequence[tuple[int, Event]]:
+        """Events with a sequence number above `seq`, oldest first."""
+        return [(s.seq, s.value) for s in self._system.board.history("events") if s.seq > seq and isinstance(s.value, Event)]
+
+    def stop(self, source: str) -> None:
+        """Zero velocity at once; a running mission pauses."""
+        self._system.stop_robot(source)
+        self._system.executive.core.pause("operator-stop")
+
+    def estop(self, source: str, reason: str) -> None:
+        """As stop, latched until released."""
+        self._estop = reason or "emergency stop"
+        self.stop(source)
+        self._system.say("error", "estop", source, f"emergency stop: {self._estop}")
+
+    def release_estop(self, source: str) -> None:
+        """Unlatch; nothing moves by that."""
+        if self._estop is not None:
+            self._estop = None
+            self._system.say("info", "estop-released", source, "emergency stop released; nothing moves until it is commanded")
+
+    def estop_reason(self) -> str | None:
+        """Why the robot is latched, None if it is not."""
+        return self._estop
+
+    def post_command(self, target: str, command: ActuatorState, source: str) -> None:
+        """Give a command to a link of the chain or to the wrist."""
+        self._refuse_if_latched()
+        if self._mission_runs():
+            raise Refused("wrong-state", "a mission runs; pause it first")
+        if self._system.inboxes[LINK_OF_TARGET[target]].post(source, command):
+            raise Refused("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
+
+    def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
+        """Start one node as an errand."""
+        self._refuse_if_latched()
+        if self._mission_runs():
+            raise Refused("wrong-state", "a mission runs; pause it first")
+        attributes = "".join(f" {name}={quoteattr(value)}" for name, value in ports.items())
+        try:
+            mission = self._load(f'<root BTCPP_format="4"><BehaviorTree ID="run"><{node}{attributes}/></BehaviorTree></root>')
+        except MissionError as error:
+            fault = error.faults[0]
+            code = "unknown-node" if fault.code == "unknown-node" else "bad-value"
+            raise Refused(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
+        errand = self._system.executive.core.start_errand(mission)
+        self._errands[str(errand.number)] = errand
+        return str(errand.number)
+
+    def run_state(self, run: str) -> RunState:
+        """How an errand stands."""
+        errand = self._errands[run]
+        if errand.state == "aborted":
+            return RunState("preempted" if errand.reason == "preempted" else "cancelled", errand.reason)
+        outputs = tuple(errand.mission.outputs().items()) if errand.is_over else ()
+        return RunState(RUN_STATES[errand.state], errand.reason, errand.text, outputs)
+
+    def cancel(self, run: str, reason: str) -> None:
+        """End an errand with zero velocity."""
+        self._system.executive.core.end_errand(self._errands[run], reason)
+
+    def mission_state(self) -> MissionState:
+        """The mission."""
+        sample = self._system.board.newest("mission/state")
+        return sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
+
+    def mission_names(self) -> Sequence[str]:
+        """The shipped missions."""
+        return sorted(path.name for path in (package_root() / SHIPPED["mission"][0]).glob("*.xml"))
+
+    def mission(self, op: str, name: str, text: str, source: str) -> None:
+        """Load, check, start, pause, resume, abort."""
+        core = self._system.executive.core
+        if op in ("load", "check"):
+            loaded = self._load_named(name, text)
+            self._loaded = loaded if op == "load" else self._loaded
+        elif op == "start":
+            self._refuse_if_latched()
+            if self._loaded is None:
+                raise Refused("wrong-state", 'no mission is loaded; send <mission op="load" name="…"/> first')
+            if self._mission_runs():
+                raise Refused("wrong-state", "a mission runs; abort it first")
+            core.start(self._loaded)
+        elif op == "abort":
+            core.abort("operator")
+        elif op in OPS_OF_STATE:
+            if op == "resume":
+                self._refuse_if_latched()
+            if self.mission_state().state != OPS_OF_STATE[op]:
+                raise Refused("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
+            core.pause("operator") if op == "pause" else core.resume()
+        else:
+            raise Refused("invalid", f'mission op="{op}" is not offered')
+
+    def tree_text(self, format: str) -> str:
+        """The tree drawn."""
+        from pluto_bt.trees.dump import dump
+
+        active = self._system.executive.core.active
+        return "" if active is None else dump(active.mission, format)
+
+    def modules(self) -> ModulesState:
+        """Every module of the run."""
+        return ModulesState(self.now_s(), tuple(module_state(part) for part in self._system.parts))
+
+    def module(self, name: str, op: str, source: str) -> None:
+        """Start or stop a module."""
+        try:
+            self._system.order_module(name, op == "start")
+        except KeyError:
+            raise Refused("unknown-module", f'no module "{name}"') from None
+
+    def _mission_runs(self) -> bool:
+        mission = self._system.executive.core.mission
+        return mission is not None and mission.state == RUNNING
+
+    def _refuse_if_latched(self) -> None:
+        if self._estop is not None:
+            raise Refused("estopped", f"emergency stop ({self._estop}); release it first")
+
+    def _load_named(self, name: str, text: str) -> Mission:
+        if not text and name not in self.mission_names():
+            raise Refused("bad-mission", f'no mission "{name}" is shipped; send it inline')
+        try:
+            return self._load(text or str(package_root() / SHIPPED["mission"][0] / name))
+        except MissionError as error:
+            raise Refused("bad-mission", str(error)) from None

@@ -1,0 +1,67 @@
+"""Where the laser is: its mount on the platform, turned by the wrist, carried by the robot."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from estimation.covariance import Covariance, as_nine, moved
+from estimation.se2 import Pose2, between
+from estimation.se3 import Pose6, compose
+from estimation.track import Moment, Tilt
+from pluto_bt.blackboard.messages import ActuatorState, LaserPose
+from pluto_bt.blackboard.poses import blend_angle, share_between
+from pluto_bt.modules.context import Context
+
+
+class Arm(NamedTuple):
+    """The laser seen from the robot, and the wrist angles that put it there. Pan turns about z at the mount, tilt then about y."""
+
+    pose_robot_laser: Pose6
+    pan_rad: float
+    tilt_rad: float
+
+
+class LaserMount:
+    """Knows the laser's mount and the history of the wrist."""
+
+    def __init__(self, context: Context) -> None:
+        laser = context.platform.devices.laser
+        self._xyz = (0.0, 0.0, 0.0) if laser is None else (laser.x_m, laser.y_m, laser.z_m)
+        self._has_wrist = context.platform.devices.wrist is not None
+        self._board = context.board
+
+    def arm(self, stamp_s: float) -> Arm | None:
+        """The laser at `stamp_s`; None if the wrist's history does not reach there."""
+        angles = self._wrist_at(stamp_s) if self._has_wrist else (0.0, 0.0)
+        return None if angles is None else Arm((*self._xyz, angles[0], angles[1], 0.0), *angles)
+
+    def planar(self, robot: Moment) -> Pose2 | None:
+        """The laser seen from the robot, both looked at from above."""
+        arm = self.arm(robot.stamp_s)
+        if arm is None:
+            return None
+        x, y, _, theta, _, _ = compose(in_space(robot.pose_odom, robot.tilt), arm.pose_robot_laser)
+        return between(robot.pose_odom, (x, y, theta))
+
+    def _wrist_at(self, stamp_s: float) -> tuple[float, float] | None:
+        pair = self._board.around("wrist/state", stamp_s)
+        if pair is None:
+            return None
+        before, after = pair[0].value, pair[1].value
+        if not isinstance(before, ActuatorState) or not isinstance(after, ActuatorState):
+            return None
+        share = share_between(before, after, stamp_s)
+        pan, tilt = (blend_angle(before.position[i], after.position[i], share) for i in (0, 1))
+        return pan, tilt
+
+
+def in_space(pose: Pose2, tilt: Tilt) -> Pose6:
+    """A pose in the plane with the robot's phi and psi."""
+    return (pose[0], pose[1], 0.0, pose[2], tilt[0], tilt[1])
+
+
+def laser_pose(stamp_s: float, robot: Pose2, tilt: Tilt, arm: Arm, covariance: Covariance, setter: int) -> LaserPose:
+    """The message: pose of the laser, pan and tilt appended. `covariance` is the robot's; it is carried out to the laser."""
+    laser = compose(in_space(robot, tilt), arm.pose_robot_laser)
+    P = moved(covariance, laser[0] - robot[0], laser[1] - robot[1])
+    return LaserPose(stamp_s, (*laser, arm.pan_rad, arm.tilt_rad), as_nine(P), int(setter))

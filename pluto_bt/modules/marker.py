@@ -1,0 +1,79 @@
+"""Adapter `marker`: camera markers through the gate, accepted ones to localisation (seed 002)."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+from drivers.records import MarkerRecord
+from estimation.marker_gate import MarkerGate
+from estimation.se2 import wrap_angle
+from pluto_bt.blackboard.codes import Setter
+from pluto_bt.blackboard.messages import MarkerState, Pose
+from pluto_bt.blackboard.poses import pose_at
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.post_box import post_box
+
+
+class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Table `[marker]` of the platform file: the gate's figures from the car's notes, and what an accepted marker is trusted with."""
+
+    min_quality: Annotated[float, Meta(ge=0, description="below: refused, low-quality")] = 0.25
+    max_heading_error_deg: Annotated[float, Meta(gt=0, le=180, description="from the gyro's heading; above: refused, bad-heading")] = 45.0
+    max_speed_mps: Annotated[float, Meta(gt=0, description="from the last accepted marker; at or above: refused, too-fast")] = 1.0
+    heading_pull: Annotated[float, Meta(ge=0, le=1, description="share of the heading's error that one accepted marker takes away")] = 0.05
+    position_noise_m: Annotated[float, Meta(gt=0, description="standard deviation of a marker's position")] = 0.03
+    heading_noise_deg: Annotated[float, Meta(gt=0, description="standard deviation of a marker's heading")] = 2.0
+
+
+class Marker:
+    """`car/marker` with the gate's verdict for each reading. An accepted one is posted as a robot pose at its stamp: the position
+    is the camera's, the heading is the estimate, pulled a little towards the camera's, else the gyro's drift would end long runs."""
+
+    def __init__(self, context: Context) -> None:
+        self._device = context.devices["marker"]
+        self._board = context.board
+        self._state = context.board.publisher("car/marker", "marker")
+        self._box = post_box(context)
+        self._start_rad = context.start_pose[2]
+        p: MarkerParameters = getattr(context.platform, "marker", None) or MarkerParameters()
+        self._parameters = p
+        self.gate = MarkerGate(p.min_quality, math.radians(p.max_heading_error_deg), p.max_speed_mps)
+
+    def start(self, now_s: float) -> None:
+        """Nothing to get ready."""
+
+    def stop(self) -> None:
+        """Nothing to let go of."""
+
+    def step(self, now_s: float) -> None:
+        """Judge each reading that has arrived."""
+        for record in self._device.read():
+            if isinstance(record, MarkerRecord):
+                self._judge(record, now_s)
+
+    def _judge(self, r: MarkerRecord, now_s: float) -> None:
+        pose = self._pose_then(r.stamp_s)
+        heading_rad = self._start_rad if pose is None else pose.pose[3]
+        refused = self.gate.judge(r.stamp_s, (r.x_m, r.y_m, r.theta_rad), r.quality, heading_rad)
+        self._state.put(MarkerState(r.stamp_s, r.marker, r.x_m, r.y_m, r.theta_rad, r.quality, refused, self.gate.accepted_count), now_s)
+        if not refused:
+            self._post(r, heading_rad, 0.0 if pose is None else pose.covariance[8])
+
+    def _pose_then(self, stamp_s: float) -> Pose | None:
+        """The estimate when the picture was taken; the newest one if that is not in the history."""
+        then = pose_at(self._board, "Localization/Pose", stamp_s)
+        if then is not None:
+            return then
+        sample = self._board.newest("Localization/Pose")
+        return sample.value if sample is not None and isinstance(sample.value, Pose) else None
+
+    def _post(self, r: MarkerRecord, heading_rad: float, heading_var_rad2: float) -> None:
+        p = self._parameters
+        theta_rad = heading_rad + p.heading_pull * wrap_angle(r.theta_rad - heading_rad)
+        xy, tt = p.position_noise_m**2, (1 - p.heading_pull) ** 2 * heading_var_rad2 + (p.heading_pull * math.radians(p.heading_noise_deg)) ** 2
+        covariance = (xy, 0.0, 0.0, 0.0, xy, 0.0, 0.0, 0.0, tt)
+        self._box.post("marker", Pose(r.stamp_s, (r.x_m, r.y_m, 0.0, theta_rad, 0.0, 0.0), covariance, Setter.JUST_SET))

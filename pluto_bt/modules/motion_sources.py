@@ -1,0 +1,112 @@
+"""What localisation reckons with: the way from the wheels, the turn from the best heading there is."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from estimation.covariance import StepNoise
+from estimation.heading import AbsoluteHeading, GyroHeading, HeadingSource
+from estimation.odometer import Odometer, SignedSpeed
+from estimation.se2 import Pose2, arc
+from estimation.track import LEVEL, Tilt
+from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
+from pluto_bt.blackboard.topics import TOPICS
+from pluto_bt.modules.context import Context
+
+STALE_AFTER_S = {topic.name: topic.stale_after_s for topic in TOPICS}
+
+
+class Step(NamedTuple):
+    """One step of dead reckoning."""
+
+    stamp_s: float
+    motion: Pose2
+    distance_var_m2: float
+    turn_var_rad2: float
+    tilt: Tilt
+
+
+class WheelWay:
+    """Way and turn from `ATRV2/Drive/Raw`."""
+
+    def __init__(self, context: Context) -> None:
+        self._raw = context.board.reader("ATRV2/Drive/Raw")
+        self._odometer = Odometer(context.platform.limits.max_speed_mps)
+        self._say = context.say
+        self._seq = 0
+
+    def step(self, now_s: float) -> tuple[float, float, float, float] | None:
+        """(stamp s, dt s, distance m, turn rad) once for each new reading."""
+        sample = self._raw()
+        if sample is None or sample.seq == self._seq or not isinstance(sample.value, ActuatorState):
+            return None
+        self._seq = sample.seq
+        distance_m, heading_rad = sample.value.position
+        jumps = self._odometer.jumps
+        way = self._odometer.step(sample.value.stamp_s, distance_m, heading_rad)
+        if self._odometer.jumps > jumps:
+            self._say("warning", "odometry-jump", "local", f"odometry jumped to {distance_m:.2f} m: the step counts as standing still")
+        return None if way is None else (sample.value.stamp_s, *way)
+
+
+class SpeedWay:
+    """Way from the car's unsigned wheel speed with the sign of the last command; its wheels know of no turn."""
+
+    def __init__(self, context: Context) -> None:
+        self._speed = context.board.reader("car/speed")
+        self._command = context.board.reader("ATRV2/Drive/Command")
+        self._signed = SignedSpeed()
+
+    def step(self, now_s: float) -> tuple[float, float, float, float] | None:
+        """(stamp s, dt s, distance m, 0) each time it is called, None while the speed is missing or stale."""
+        sample, command = self._speed(), self._command()
+        if sample is None or not isinstance(sample.value, SpeedState):
+            return None
+        is_stale = now_s - sample.value.stamp_s > STALE_AFTER_S["car/speed"]
+        commanded = command.value.velocity[0] if command is not None and isinstance(command.value, ActuatorState) else 0.0
+        dt_s, way_m = self._signed.step(now_s, 0.0 if is_stale else sample.value.speed_mps, commanded)
+        return None if is_stale or dt_s <= 0.0 else (now_s, dt_s, way_m, 0.0)
+
+
+class MotionSources:
+    """Joins the way and the heading that this platform has.
+
+    The heading is the gyro's (`dmu/state`, once its bias is known), an absolute sensor's (`imu/state`), or the wheels' where there
+    is neither or it is stale.
+    """
+
+    def __init__(self, context: Context, noise: StepNoise) -> None:
+        devices = context.platform.devices
+        is_car = context.platform.body.kinematics == "ackermann" and devices.speed is not None
+        self._way: WheelWay | SpeedWay = SpeedWay(context) if is_car else WheelWay(context)
+        self._noise = noise
+        self._heading: HeadingSource
+        if devices.imu is not None and devices.imu.absolute:
+            self._heading, topic = AbsoluteHeading(context.start_pose[2]), "imu/state"
+        else:
+            self._heading, topic = GyroHeading(), "dmu/state"
+        self._sensor = context.board.reader(topic)
+        self._stale_after_s = STALE_AFTER_S[topic]
+
+    def step(self, now_s: float) -> Step | None:
+        """The next step, or None if nothing new has come."""
+        way = self._way.step(now_s)
+        if way is None:
+            return None
+        stamp_s, dt_s, distance_m, wheel_turn_rad = way
+        theta_rad, tilt = self._theta_at(stamp_s, now_s)
+        turn_rad, is_measured = self._heading.turn(dt_s, wheel_turn_rad, theta_rad)
+        noise = self._noise
+        turn_var = noise.gyro_turn_var_rad2(dt_s) if is_measured else noise.wheel_turn_var_rad2(distance_m, wheel_turn_rad)
+        return Step(stamp_s, arc(distance_m, turn_rad), noise.distance_var_m2(distance_m), turn_var, tilt)
+
+    def _theta_at(self, stamp_s: float, now_s: float) -> tuple[float | None, Tilt]:
+        """The sensor's heading, carried from its own (older) stamp to `stamp_s` by its turn rate; None if it cannot be used."""
+        sample = self._sensor()
+        if sample is None or not isinstance(sample.value, ImuState) or now_s - sample.value.stamp_s > self._stale_after_s:
+            return None, LEVEL
+        state = sample.value
+        tilt = (state.phi_rad, state.psi_rad)
+        if not state.bias_known:
+            return None, tilt
+        return state.theta_rad + state.turn_rates_radps[2] * (stamp_s - state.stamp_s), tilt

@@ -1,0 +1,93 @@
+"""The robot file: one TOML file a platform, with the body, the devices and a table of parameters for each module."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pluto_bt.maps.platform import Platform
+from pluto_bt.maps.polygons import crossing, is_flat
+from pluto_bt.modules.dmu import DmuParameters
+from pluto_bt.modules.local import LocalParameters
+from pluto_bt.modules.marker import MarkerParameters
+from pluto_bt.runtime.parameters import build, override
+from pluto_bt.skills.avoid import AvoidParameters
+
+from pluto_bt.skills.drive import DriveParameters
+from pluto_bt.skills.motion import MotionParameters
+from pluto_bt.source import Faults, InputError, Place, did_you_mean
+from pluto_bt.source.toml_reader import read_toml
+
+SHIPPED = ("atrv2", "car", "jbot", "pioneer")
+
+
+class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A platform with the parameters of its modules; each struct is declared by the part that uses it."""
+
+    drive: DriveParameters = DriveParameters()
+    avoid: AvoidParameters = AvoidParameters()
+    motion: MotionParameters = MotionParameters()
+
+    local: LocalParameters = LocalParameters()
+    dmu: DmuParameters = DmuParameters()
+    marker: MarkerParameters = MarkerParameters()
+
+
+def load_robot_file(name: str, settings: Sequence[str] = ()) -> RobotFile:
+    """The robot file of a shipped platform or at a path, with `--set` settings applied.
+
+    Raises: InputError with every fault of the file and of the settings.
+    """
+    faults = Faults()
+    text = _text_of(name, faults)
+    table: dict[str, Any] = {}
+    robot: RobotFile | None = None
+    if text is not None:
+        table, locate = read_toml(text, name if name.endswith(".toml") else f"{name}.toml", faults)
+        if not faults.has_errors:
+            override(table, settings, RobotFile, faults)
+            robot = build(RobotFile, table, locate, faults)
+            if robot is not None:
+                _check_body(robot, locate(("body", "outline_m")), faults)
+    faults.raise_errors()
+    assert robot is not None  # build gives None only together with a fault
+    return robot
+
+
+def _text_of(name: str, faults: Faults) -> str | None:
+    """The file's text, or None with a fault that says where it was looked for."""
+    if name in SHIPPED:
+        return (resources.files("pluto_bt") / "platforms" / f"{name}.toml").read_text(encoding="utf-8")
+    path = Path(name)
+    if path.suffix != ".toml":
+        faults.error(Place(name), "unknown-platform", f'no platform "{name}"', expected=f"one of {', '.join(SHIPPED)}, or a .toml file",
+                     found=name, mend=did_you_mean(name, SHIPPED))  # fmt: skip
+        return None
+    try:
+        if path.stat().st_size > 1 << 20:
+            faults.error(Place(name), "too-large", "a platform file has at most 1 MiB", found=f"{path.stat().st_size} bytes")
+            return None
+        return path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        faults.error(Place(name), "unreadable", f"cannot read the platform file: {error}", mend="check the path; it is taken from the working folder")
+        return None
+
+
+def _check_body(robot: RobotFile, place: Place, faults: Faults) -> None:
+    """What single values cannot tell: the outline is a polygon round the origin; an ackermann robot knows its turning radius."""
+    outline = np.array(robot.body.outline_m)
+    if not np.all(np.isfinite(outline)):
+        faults.error(place, "bad-value", "body.outline_m has numbers that are not finite")
+    elif crossing(outline) is not None:
+        faults.error(place, "self-crossing", "body.outline_m crosses itself", mend="list the corners in order round the robot")
+    elif is_flat(outline):
+        faults.error(place, "no-area", "body.outline_m encloses no area")
+    if robot.body.kinematics == "ackermann" and robot.body.min_turn_radius_m <= 0:
+        faults.error(place, "missing-parameter", "an ackermann body needs min_turn_radius_m > 0")
+
+
+__all__ = ["SHIPPED", "InputError", "RobotFile", "load_robot_file"]

@@ -1,0 +1,86 @@
+"""The robot that missions see, over the blackboard and the inboxes of one system."""
+
+from __future__ import annotations
+
+from pluto_bt.behaviours.robot import Ticket
+from pluto_bt.blackboard import Snapshot
+from pluto_bt.blackboard.codes import CommandType
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair
+from pluto_bt.maps.platform import Platform
+from pluto_bt.maps.world import World
+from pluto_bt.modules.context import Context
+
+SOURCE = "mission"
+GOALS_KEPT = 200
+MOTION_COMMAND, MOTION_STATUS = "motion/command", "motion/status"
+
+
+class RobotLink:
+    """Implements `pluto_bt.behaviours.robot.Robot`. The executive calls `refresh` before each tick, so that a tick sees one moment."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._snapshot = context.board.snapshot(context.clock.now_s())
+        self.goals: list[Pair] = []  # where missions sent the robot, for pictures
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The moment that this tick sees."""
+        return self._snapshot
+
+    @property
+    def platform(self) -> Platform:
+        """The platform file."""
+        return self._context.platform
+
+    @property
+    def map(self) -> World | None:
+        """The a-priori map."""
+        return self._context.map
+
+    def refresh(self, now_s: float) -> None:
+        """Take the snapshot that the next tick sees."""
+        self._snapshot = self._context.board.snapshot(now_s)
+
+    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+        """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
+        command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), (force,))
+        if flags % 10 == CommandType.GOTO and flags > 0 and len(self.goals) < GOALS_KEPT and position not in self.goals:
+            self.goals.append(position)
+        return Ticket(command, self._context.inboxes["motion"].post(SOURCE, command))
+
+    def status(self, ticket: Ticket) -> FVectorState | None:
+        """`motion/status` as far as it speaks of this command: motion has accepted it and has written its status since."""
+        accepted, status = self._snapshot.newest(MOTION_COMMAND), self._snapshot.newest(MOTION_STATUS)
+        if accepted is None or status is None or status.written_s < accepted.written_s:
+            return None
+        if accepted.value != ticket.command or not isinstance(status.value, FVectorState):
+            return None
+        return status.value
+
+    def newest(self, topic: str) -> Message | None:
+        """The newest value, or None if nobody has written yet."""
+        sample = self._snapshot.newest(topic)
+        return None if sample is None else sample.value
+
+    def age_s(self, topic: str) -> float:
+        """Seconds since the value was true; infinite without a value."""
+        return self._snapshot.age_s(topic)
+
+    def is_stale(self, topic: str) -> bool:
+        """True if the value is missing or older than the table of topics allows."""
+        return self._snapshot.is_stale(topic)
+
+    def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
+        """Post a command to the wrist, both axes alike."""
+        now_s = self._context.clock.now_s()
+        rates, accelerations = (rate_radps, rate_radps), (acceleration_radps2, acceleration_radps2)
+        self._context.inboxes["wrist"].post(SOURCE, ActuatorState(now_s, 0, (pan_rad, tilt_rad), rates, accelerations))
+
+    def say(self, text: str) -> None:
+        """A line for operators."""
+        self._context.say("info", "say", SOURCE, text)
+
+    def stop(self) -> None:
+        """Zero velocity at once; beats every command that waits."""
+        self._context.inboxes["motion"].stop(SOURCE, self._context.clock.now_s())

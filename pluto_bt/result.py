@@ -1,0 +1,50 @@
+"""What a run came to: the object of `--json` (DESIGN.md, section 4)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+EXIT_CODES = {"SUCCESS": 0, "FAILURE": 1, "STOPPED": 1, "REFUSED": 2}
+SUPERVISION = ("leaf-error", "module-error", "hung", "base-lost")
+INTERRUPTED = "interrupted"
+
+
+class RunResult(msgspec.Struct, kw_only=True):
+    """The outcome of one run. Poses are [x m, y m, theta rad] in the map frame."""
+
+    result: str
+    reason: str = ""
+    sim_time_s: float = 0.0
+    wall_time_s: float = 0.0
+    ticks: int = 0
+    distance_m: float = 0.0
+    collisions: int = 0
+    hit_by: int = 0
+    min_clearance_m: float | None = None
+    final_pose: tuple[float, float, float] | None = None
+    estimated_pose: tuple[float, float, float] | None = None
+    trace_sha256: str = ""
+    leaves: dict[str, str] = {}
+    blackboard: dict[str, Any] = {}
+    faults: list[dict[str, str | int]] = []
+    contacts: list[dict[str, Any]] = []
+    text: str = ""
+    seed: int = 0
+    mission: str = ""
+    world: str = ""
+    platform: str = ""
+
+    @property
+    def exit_code(self) -> int:
+        """The exit code of `pluto run`."""
+        if self.reason == INTERRUPTED:
+            return 130
+        if self.reason in SUPERVISION:
+            return 3
+        return EXIT_CODES[self.result]
+
+    def as_json(self) -> str:
+        """One line of JSON; blackboard values that JSON does not know stand as text."""
+        return msgspec.json.encode(self, enc_hook=str).decode()

@@ -1,0 +1,134 @@
+"""From checked inputs to a result: makes the system, runs the mission, sums up. Used by `pluto run`, the pytest plugin and the benchmarks."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pluto_bt.blackboard.messages import Event, Pose
+from pluto_bt.commands.inputs import Inputs
+from pluto_bt.modules.topic_globals import TopicGlobals
+from pluto_bt.result import RunResult
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wall_ns
+from pluto_bt.system import Options, System
+from pluto_bt.trees import Mission, MissionError, check_mission, load_mission
+from pluto_bt.trees.executive import ABORTED, SUCCEEDED
+
+
+class Runner:
+    """One run. After `run`, `result`, `system` and `mission` can be looked at."""
+
+    def __init__(
+        self,
+        inputs: Inputs,
+        mission: Mission,
+        clock: VirtualClock | MonotonicClock,
+        *,
+        max_time_s: float | None = None,
+        trace_path: str | Path | None = None,
+        on_event: Callable[[Event], None] = lambda event: None,
+        on_progress: Callable[[System], None] = lambda system: None,
+    ) -> None:
+        self.inputs = inputs
+        self.mission = mission
+        options = Options(
+            world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
+            trace_path=Path(trace_path) if trace_path else None, on_event=on_event, on_progress=on_progress,
+        )  # fmt: skip
+        System(replace(options, trace_path=None, on_event=lambda event: None), VirtualClock()).rehearse()
+        if isinstance(clock, MonotonicClock):
+            clock.restart()
+        self.system = System(options, clock)
+        self.result = RunResult(result="STOPPED")
+
+    @contextmanager
+    def interruptible(self) -> Iterator[None]:
+        """While inside, Ctrl-C and SIGTERM stop the robot and end the run."""
+        if threading.current_thread() is not threading.main_thread():
+            yield
+            return
+        numbers = (signal.SIGINT, signal.SIGTERM)
+        old = [signal.signal(number, lambda *unused: self.system.interrupt()) for number in numbers]
+        try:
+            yield
+        finally:
+            for number, handler in zip(numbers, old, strict=True):
+                signal.signal(number, handler)
+
+    def run(self) -> RunResult:
+        """Run to the end and sum up."""
+        begun_ns = wall_ns()
+        self.system.run(self.mission)
+        self.result = self._sum_up((wall_ns() - begun_ns) / 1e9)
+        return self.result
+
+    def _sum_up(self, wall_time_s: float) -> RunResult:
+        system, simulator = self.system, self.system.simulator
+        result, reason, text = self._outcome()
+        sample = system.board.newest("Localization/Pose")
+        believed = sample.value if sample is not None and isinstance(sample.value, Pose) else None
+        contacts = [_contact(contact, "collision") for contact in simulator.collisions] + [_contact(contact, "hit-by") for contact in simulator.hit_by]
+        clearance_m = simulator.min_clearance_m
+        activity = system.executive.core.mission
+        return RunResult(
+            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=wall_time_s,
+            ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
+            hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
+            estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], believed.pose[3]),
+            trace_sha256=system.trace.sha256(), leaves=self.mission.statuses(), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
+            seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
+        )  # fmt: skip
+
+    def _outcome(self) -> tuple[str, str, str]:
+        """(result, reason, sentence)."""
+        system, activity = self.system, self.system.executive.core.mission
+        if activity is not None and activity.error is not None:
+            return "STOPPED", "leaf-error", activity.text
+        if system.ended is not None:
+            return system.ended
+        if activity is None or activity.state == ABORTED:
+            return "STOPPED", "stopped", "" if activity is None else activity.reason
+        return ("SUCCESS" if activity.state == SUCCEEDED else "FAILURE"), activity.reason, activity.text
+
+    def goals(self) -> Sequence[tuple[float, float]]:
+        """The goals that the mission drove to, for the picture."""
+        robot = self.system.robot
+        return tuple(dict.fromkeys(robot.goals))
+
+
+def make_runner(
+    inputs: Inputs,
+    *,
+    realtime: bool = False,
+    speed: float = 1.0,
+    max_time_s: float | None = None,
+    trace_path: str | Path | None = None,
+    gateway: str | None = None,
+    nodes: Sequence[type] = (),
+    on_event: Callable[[Event], None] = lambda event: None,
+    on_progress: Callable[[System], None] = lambda system: None,
+) -> Runner:
+    """Check and load the mission, then make the robot around it.
+
+    Raises: MissionError with all faults, also those that BehaviorTree.CPP finds only while ticking; nothing heavy was imported by then.
+    """
+    clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
+    topics = TopicGlobals()
+    common: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "topics": topics, "plugins": inputs.plugins, "file": str(inputs.mission_path)}
+    faults = check_mission(inputs.mission_path, nodes, **common)
+    if any(fault.severity == "error" for fault in faults):
+        raise MissionError(faults)
+    mission = load_mission(inputs.mission_path, nodes, clock, **common)
+    runner = Runner(inputs, mission, clock, max_time_s=max_time_s, trace_path=trace_path, on_event=on_event, on_progress=on_progress)
+    topics.view = lambda: runner.system.robot.snapshot
+    mission.attach(runner.system.robot)
+    return runner
+
+
+def _contact(contact: Any, kind: str) -> dict[str, Any]:
+    return {"kind": kind, "t_s": contact.t_s, "x_m": contact.x_m, "y_m": contact.y_m, "with_id": contact.with_id, "speed_mps": contact.speed_mps}

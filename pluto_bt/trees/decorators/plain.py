@@ -1,0 +1,62 @@
+"""Inverter, ForceSuccess, ForceFailure, KeepRunningUntilFailure: another answer for the child's."""
+
+from __future__ import annotations
+
+from typing import ClassVar
+
+from pluto_bt.trees.engine.node import DecoratorNode, reset
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
+
+
+class Mapping(DecoratorNode):
+    """Tells its parent `ANSWERS[child's answer]`; RUNNING and SKIPPED pass."""
+
+    ANSWERS: ClassVar[dict[Result, Result]] = {}
+
+    def step(self) -> Result:
+        if self.status is not RUNNING:
+            self.status = RUNNING
+            self.last = IDLE
+        result = self.child.step()
+        if result is SKIPPED:
+            return self.skip()
+        if result is not RUNNING:
+            reset(self.child)
+            result = self.ANSWERS[result]
+            self.status = result
+        return result  # type: ignore[no-any-return]
+
+
+class Inverter(Mapping):
+    """SUCCESS becomes FAILURE and FAILURE becomes SUCCESS."""
+
+    ANSWERS = {SUCCESS: FAILURE, FAILURE: SUCCESS}
+
+
+class ForceSuccess(Mapping):
+    """A child that ends has succeeded."""
+
+    ANSWERS = {SUCCESS: SUCCESS, FAILURE: SUCCESS}
+
+
+class ForceFailure(Mapping):
+    """A child that ends has failed."""
+
+    ANSWERS = {SUCCESS: FAILURE, FAILURE: FAILURE}
+
+
+class KeepRunningUntilFailure(DecoratorNode):
+    """RUNNING until the child fails; a child that succeeds begins again in the next tick."""
+
+    def step(self) -> Result:
+        if self.status is not RUNNING:
+            self.status = RUNNING
+            self.last = IDLE
+        result = self.child.step()
+        if result is FAILURE:
+            reset(self.child)
+            self.status = FAILURE
+            return FAILURE
+        if result is SUCCESS:
+            reset(self.child)
+        return RUNNING

@@ -1,0 +1,52 @@
+"""Precondition: a script decides whether the child is begun."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pluto_bt.trees.engine.node import DecoratorNode, reset, start
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.ports import PortModel
+from pluto_bt.trees.script import ScriptRunner
+from pluto_bt.trees.values import SCRIPT, STATUS
+
+
+class Precondition(DecoratorNode):
+    """Asks `if` before the child begins, not while it is RUNNING; when false the answer is `else`."""
+
+    PORTS = {
+        "if": PortModel("if", kind=SCRIPT, at_load=True, description="the condition"),
+        "else": PortModel("else", kind=STATUS, default="FAILURE", description="the answer when it is false"),
+    }
+
+    def __init__(self, name: str = "", child: Any = None) -> None:
+        super().__init__(name, child)
+        self.working = False
+        self.script: ScriptRunner | None = None  # set by the loader
+
+    def step(self) -> Result:
+        otherwise: Result = self.read("else")
+        if not self.working:
+            if self.script is None:
+                self.fail("port 'if' is missing")
+            self.working = self.script.is_true(self)
+            if not self.working:
+                return self._answer(otherwise)
+        result = self.child.step()
+        if result is SKIPPED:
+            return self.skip()
+        if result is RUNNING:
+            start(self)
+            return RUNNING
+        reset(self.child)
+        self.working = False
+        self.status = SUCCESS if result is SUCCESS else FAILURE
+        return result  # type: ignore[no-any-return]
+
+    def _answer(self, answer: Result) -> Result:
+        if answer is SKIPPED:
+            return self.skip()
+        if answer is IDLE:
+            self.fail("else is IDLE, which no node may answer")
+        self.status = answer
+        return answer

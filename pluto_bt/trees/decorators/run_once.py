@@ -1,0 +1,37 @@
+"""RunOnce: the child is worked to its end once in the life of the mission."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pluto_bt.trees.engine.node import DecoratorNode, reset, start
+from pluto_bt.trees.engine.status import RUNNING, SKIPPED, SUCCESS, Result, Status
+from pluto_bt.trees.ports import PortModel
+from pluto_bt.trees.values import BOOL
+
+
+class RunOnce(DecoratorNode):
+    """After the child's first end: SKIPPED for ever, or its answer again with `then_skip` false. A halt does not re-arm it."""
+
+    PORTS = {"then_skip": PortModel("then_skip", kind=BOOL, default="true", description="afterwards skip (else repeat the answer)")}
+
+    def __init__(self, name: str = "", child: Any = None) -> None:
+        super().__init__(name, child)
+        self.answer: Status | None = None
+
+    def step(self) -> Result:
+        then_skip = self.read("then_skip")
+        if self.answer is not None:
+            if then_skip:
+                return self.skip()
+            self.status = self.answer
+            return self.answer
+        start(self)
+        result = self.child.step()
+        if result is SKIPPED:
+            return self.skip()
+        if result is not RUNNING:
+            self.answer = self.status = result
+            reset(self.child)
+            self.feedback_message = f"done once: {'SUCCESS' if result is SUCCESS else 'FAILURE'}"
+        return result  # type: ignore[no-any-return]

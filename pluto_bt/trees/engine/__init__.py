@@ -1,0 +1,1 @@
+"""The tick engine: nodes as py_trees behaviours, ticked by plain method calls."""

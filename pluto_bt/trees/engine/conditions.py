@@ -1,0 +1,65 @@
+"""Pre- and post-conditions: the eight script attributes that any node may have.
+
+Only nodes that have them pay: their `step` and `halt` are replaced on the instance.
+Order of the pre-conditions: `_failureIf`, `_successIf`, `_skipIf` (only of an IDLE node), `_while` (also of a RUNNING one).
+After SUCCESS `_onSuccess` and `_post` run, after FAILURE `_onFailure` and `_post`, on halt only `_onHalted`; SKIPPED runs none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Final
+
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.script import ScriptRunner
+
+PRE_CONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")
+POST_CONDITIONS: Final = ("_onHalted", "_onFailure", "_onSuccess", "_post")
+CONDITIONS: Final = PRE_CONDITIONS + POST_CONDITIONS
+
+
+def guard(node: Any, scripts: Mapping[str, ScriptRunner], skip: Callable[[Any], Result]) -> None:
+    """Give `node` its conditions. `skip(node)` notes that it was skipped and answers SKIPPED."""
+    step, halt = node.step, node.halt
+    pre = [(name, scripts[name]) for name in PRE_CONDITIONS if name in scripts]
+    after = {
+        SUCCESS: [scripts[name] for name in ("_onSuccess", "_post") if name in scripts],
+        FAILURE: [scripts[name] for name in ("_onFailure", "_post") if name in scripts],
+    }
+    on_halted = scripts.get("_onHalted")
+
+    def guarded_halt() -> None:
+        halt()
+        if on_halted is not None:
+            on_halted.run(node)
+
+    def forced() -> Result | None:
+        status = node.status
+        if status is IDLE:
+            return _forced_when_idle(node, pre)
+        if status is RUNNING and pre and pre[-1][0] == "_while" and not pre[-1][1].is_true(node):
+            node.halt()
+            return SKIPPED
+        return None
+
+    def guarded_step() -> Result:
+        result = forced() if pre else None
+        if result is SKIPPED:
+            return skip(node)
+        if result is None:
+            result = step()
+        for script in after.get(result, ()):
+            script.run(node)
+        if result is not SKIPPED:
+            node.status = result
+        return result  # type: ignore[no-any-return]
+
+    node.step, node.halt = guarded_step, guarded_halt
+
+
+def _forced_when_idle(node: Any, pre: list[tuple[str, ScriptRunner]]) -> Result | None:
+    answers: dict[str, Result] = {"_failureIf": FAILURE, "_successIf": SUCCESS, "_skipIf": SKIPPED}
+    for name, script in pre:
+        if script.is_true(node) is (name != "_while"):
+            return answers.get(name, SKIPPED)
+    return None

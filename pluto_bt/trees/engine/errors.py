@@ -1,0 +1,41 @@
+"""Errors of missions.
+
+    PlutoError
+    ├── InputError
+    │   └── MissionError     the file cannot be loaded; `.faults` has every fault
+    ├── TickError            a node broke its promise while ticking; the tree has been halted
+    └── StepError            inside the engine only: which node it was; the mission turns it into a TickError
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pluto_bt.source import InputError, PlutoError
+
+
+class MissionError(InputError):
+    """A mission that cannot be loaded; `faults` holds all faults of all its files."""
+
+
+class TickError(PlutoError):
+    """An error while ticking. The tree is halted before this is raised.
+
+    Attributes:
+        path, type: the node and its type name.
+        file, line: where the node stands in the mission ("" and 0 if it came from no file).
+        reason: what went wrong, without the place.
+    """
+
+    def __init__(self, path: str, type_name: str, file: str, line: int, reason: str) -> None:
+        self.path, self.type, self.file, self.line, self.reason = path, type_name, file, line, reason
+        where = f" at {file or '<text>'}:{line}" if line else ""
+        super().__init__(f"node {path!r} ({type_name}){where}: {reason}")
+
+
+class StepError(PlutoError):
+    """Raised by a node while it steps; carries the node on its way up to the mission."""
+
+    def __init__(self, node: Any, reason: str) -> None:
+        self.node, self.reason = node, reason
+        super().__init__(reason)

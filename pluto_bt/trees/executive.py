@@ -1,0 +1,158 @@
+"""The executive: one mission at a time, ticked, paused, resumed, stopped; it decides nothing that the tree does not decide.
+
+Beside the mission there may be one errand: a single node that an operator runs while no mission does (or while it is paused).
+Start reading at `Executive.step`.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import Protocol
+
+from pluto_bt.trees.engine.errors import TickError
+from pluto_bt.trees.mission import Mission
+
+IDLE, RUNNING, PAUSED, SUCCEEDED, FAILED, ABORTED = "idle", "running", "paused", "succeeded", "failed", "aborted"
+ENDED = {"SUCCESS": SUCCEEDED, "FAILURE": FAILED, "SKIPPED": FAILED}
+
+
+class Body(Protocol):
+    """What the executive needs of the robot."""
+
+    def refresh(self, now_s: float) -> None:
+        """Take one consistent view of all topics for the coming tick."""
+
+    def stop(self) -> None:
+        """Zero velocity at once. Thread-safe."""
+
+
+class Activity:
+    """A mission at work: its state, and why it is in it."""
+
+    def __init__(self, mission: Mission, number: int) -> None:
+        self.mission = mission
+        self.number = number
+        self.state = RUNNING
+        self.reason = ""
+        self.text = ""
+        self.ticks = 0
+        self.error: TickError | None = None
+
+    @property
+    def is_over(self) -> bool:
+        """True once it cannot be ticked any more."""
+        return self.state in (SUCCEEDED, FAILED, ABORTED)
+
+    def tick(self) -> None:
+        """One decision."""
+        self.ticks += 1
+        try:
+            status = self.mission.tick_once()
+        except TickError as error:
+            self.error = error
+            self.state, self.reason, self.text = FAILED, "leaf-error", str(error)
+            return
+        if status in ENDED:
+            self.state = ENDED[status]
+            if self.state == FAILED:
+                self.reason = self.mission.deciding_reason() or ("skipped" if status == "SKIPPED" else "failed")
+                self.text = self.mission.deciding_text()
+
+    def end(self, reason: str) -> None:
+        """Halt the tree for good."""
+        if not self.is_over:
+            self.mission.halt()
+            self.state, self.reason = ABORTED, reason
+
+
+class Executive:
+    """Orders (start, pause, …) come from any thread and take effect at the next step; a pause stops the robot at once."""
+
+    def __init__(self, body: Body, say: Callable[[str, str, str], None]) -> None:
+        self._body = body
+        self._say = say  # (level, code, text)
+        self._orders: deque[Callable[[], None]] = deque()
+        self._runs = 0
+        self.mission: Activity | None = None
+        self.errand: Activity | None = None
+
+    @property
+    def active(self) -> Activity | None:
+        """What is ticked: the errand while there is one, else the mission."""
+        return self.errand if self.errand is not None and not self.errand.is_over else self.mission
+
+    def step(self, now_s: float) -> Activity | None:
+        """One turn: orders, a fresh view, one decision. Gives what was ticked."""
+        while self._orders:
+            self._orders.popleft()()
+        active = self.active
+        if active is None or active.state != RUNNING:
+            return None
+        self._body.refresh(now_s)
+        active.tick()
+        if active.is_over:
+            self._body.stop()
+            if active.error is not None:
+                self._say("error", "leaf-error", active.text)
+        return active
+
+    def start(self, mission: Mission) -> None:
+        """Run `mission` from its beginning at the next step; one that runs is ended."""
+        self._orders.append(lambda: self._start(mission))
+
+    def start_errand(self, mission: Mission) -> Activity:
+        """Run a single node beside a mission that does not run; an errand that goes on is ended."""
+        self._runs += 1
+        errand = Activity(mission, self._runs)
+        self._orders.append(lambda: self._start_errand(errand))
+        return errand
+
+    def end_errand(self, errand: Activity, reason: str) -> None:
+        """End an errand; harmless if it is over."""
+        if not errand.is_over:
+            self._body.stop()
+            self._orders.append(lambda: errand.end(reason))
+
+    def pause(self, reason: str) -> None:
+        """Stop the robot now; the mission waits for `resume`, an errand ends. Thread-safe."""
+        self._body.stop()
+        self._orders.append(lambda: self._pause(reason))
+
+    def resume(self) -> None:
+        """Let a paused mission go on where its tree stands; motion leaves command again when they are next ticked."""
+        self._orders.append(self._resume)
+
+    def abort(self, reason: str) -> None:
+        """Stop the robot now and end the mission and any errand."""
+        self._body.stop()
+        self._orders.append(lambda: self._abort(reason))
+
+    def _start(self, mission: Mission) -> None:
+        self._abort("preempted")
+        self._runs += 1
+        self.mission = Activity(mission, self._runs)
+
+    def _start_errand(self, errand: Activity) -> None:
+        if self.errand is not None:
+            self.errand.end("preempted")
+        self.errand = errand
+
+    def _pause(self, reason: str) -> None:
+        if self.errand is not None:
+            self.errand.end(reason)
+        if self.mission is not None and self.mission.state == RUNNING:
+            self.mission.state, self.mission.reason = PAUSED, reason
+            self._say("warning", reason, f"mission paused: {reason}")
+
+    def _resume(self) -> None:
+        if self.errand is not None:
+            self.errand.end("preempted")
+        if self.mission is not None and self.mission.state == PAUSED:
+            self.mission.state, self.mission.reason = RUNNING, ""
+            self._say("info", "resumed", "mission goes on")
+
+    def _abort(self, reason: str) -> None:
+        for activity in (self.errand, self.mission):
+            if activity is not None:
+                activity.end(reason)

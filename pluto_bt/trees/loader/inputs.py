@@ -1,0 +1,68 @@
+"""Inputs of the main tree: declared by `<SubTree ID="main">` in TreeNodesModel, given by `--port NAME=VALUE`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pluto_bt.source import Place, did_you_mean
+from pluto_bt.trees.loader.files import MissionFiles, Model, TreeSource
+from pluto_bt.trees.loader.pointers import key_of
+from pluto_bt.trees.loader.report import Report
+from pluto_bt.trees.scopes import EMPTY, Scope
+from pluto_bt.trees.values import PortProblem, literal_value
+
+REALS = ("double", "float")
+
+
+def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mapping[str, str] | None, report: Report) -> None:
+    """Write the given inputs and the defaults of the others into the root scope; each counts as a write.
+
+    With `given` None nobody asked on a command line: inputs without a value are then left to the caller.
+    """
+    model = files.subtree_models.get(main.tree_id)
+    for name, text in (given or {}).items():
+        _check_name(name, model, main, report)
+        port = model.ports.get(name) if model is not None else None
+        _write(root, name, text, port.type_name if port is not None else "", report)
+    for port in model.ports.values() if model is not None else ():
+        entry = root.find(port.name)
+        if (entry is not None and entry.value is not EMPTY) or port.direction == "out":
+            continue
+        if port.default is not None:
+            _write(root, port.name, port.default, port.type_name, report)
+        elif given is not None:
+            what = f'input "{port.name}" of {main.tree_id!r} is not given'
+            mend = f"add --port {port.name}=VALUE"
+            report.error(port.element.place, "missing-input", what, expected=port.description or port.type_name or "a value", found="nothing", mend=mend)
+
+
+def _write(root: Scope, name: str, text: str, type_name: str, report: Report) -> None:
+    """Typed as a SubTree's literal is, but that digits for an input declared as a real number are one."""
+    try:
+        value = literal_value(text)
+        root.write(name, float(value) if type_name in REALS and isinstance(value, int) else value)
+    except PortProblem as problem:
+        report.error(Place(f"--port {name}"), "bad-input", str(problem), found=text)
+
+
+def _check_name(name: str, model: Model | None, main: TreeSource, report: Report) -> None:
+    known = list(model.ports) if model is not None else _keys_used(main)
+    if name not in known:
+        what = f'tree {main.tree_id!r} has no input "{name}"'
+        report.error(
+            Place(f"--port {name}"), "unknown-input", what, expected="one of: " + (", ".join(known) or "none"), found=name, mend=did_you_mean(name, known)
+        )
+
+
+def _keys_used(main: TreeSource) -> list[str]:
+    """The root entries that the main tree names in braces: its inputs where it declares none."""
+    found: dict[str, None] = {}
+    waiting = list(main.element.children)
+    while waiting:
+        element = waiting.pop(0)
+        for attribute in element.attributes.values():
+            key = key_of(attribute.name, attribute.value)
+            if key is not None:
+                found[key] = None
+        waiting.extend(element.children)
+    return list(found)

@@ -1,0 +1,202 @@
+"""`load_mission` and `check_mission`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pluto_bt.source import Fault, Faults, Place, did_you_mean
+from pluto_bt.trees.engine.context import Context, MissionClock
+from pluto_bt.trees.engine.errors import MissionError
+from pluto_bt.trees.loader.construct import Construction
+from pluto_bt.trees.loader.expand import Expansion, Plan
+from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
+from pluto_bt.trees.loader.inputs import set_inputs
+from pluto_bt.trees.loader.registry import NodeType, node_types
+from pluto_bt.trees.loader.report import Report
+from pluto_bt.trees.loader.static import StaticCheck
+from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.scopes import Board, Topics
+
+
+@dataclass
+class Reading:
+    """What loading and checking have in common: the files, the plan and the faults."""
+
+    files: MissionFiles
+    types: dict[str, NodeType]
+    board: Board
+    report: Report
+    main: TreeSource | None = None
+    plan: Plan | None = None
+
+
+def load_mission(
+    text_or_path: str | Path,
+    nodes: Iterable[Any] = (),
+    clock: MissionClock | None = None,
+    blackboard: Mapping[str, Any] | None = None,
+    enums: Mapping[str, int] | None = None,
+    *,
+    tree: str | None = None,
+    ports: Mapping[str, str] | None = None,
+    robot: Any = None,
+    topics: Topics | None = None,
+    file: str | None = None,
+    plugins: Sequence[str] = (),
+) -> Mission:
+    """Load a mission in BehaviorTree.CPP v4 XML.
+
+    Args:
+        text_or_path: the XML itself if it begins with "<", else the name of a file.
+        nodes: classes of leaves, besides all that py_trees' registry knows.
+        clock: the mission's time; without one, the monotonic clock of this computer.
+        blackboard: values of root entries before the first tick.
+        enums: names that scripts may use as numbers.
+        tree: the main tree (`--tree`).
+        ports: inputs of the main tree (`--port`), as text.
+        robot, topics: what leaves find at `blackboard.robot` and under `@topic` keys.
+        file: the name to show for a text, and where its includes are looked for.
+        plugins: modules with leaves, to be imported.
+    Raises: MissionError with all faults, for everything that BehaviorTree.CPP refuses at load.
+    """
+    reading = _read(text_or_path, nodes, blackboard, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins)
+    report, faults = reading.report, reading.report.faults
+    if report.stops_loading or reading.plan is None or reading.main is None:
+        raise MissionError(faults.in_order())
+    reading.board.robot = robot
+    context = Context(clock if clock is not None else _monotonic_clock())
+    construction = Construction(context, dict(enums or {}), report)
+    root = construction.run(reading.plan)
+    if report.stops_loading:
+        raise MissionError(faults.in_order())
+    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context)
+
+
+def check_mission(
+    text_or_path: str | Path,
+    nodes: Iterable[Any] = (),
+    *,
+    tree: str | None = None,
+    ports: Mapping[str, str] | None = None,
+    topics: Topics | None = None,
+    file: str | None = None,
+    plugins: Sequence[str] = (),
+    models: Sequence[str | Path] = (),
+) -> tuple[Fault, ...]:
+    """All faults of a mission, in the order of the text: also those that BehaviorTree.CPP finds only while ticking, and as warnings those it
+    silently accepts. Makes no node. `models` are files whose TreeNodesModel describes foreign nodes."""
+    reading = _read(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
+    return reading.report.faults.in_order()
+
+
+def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
+    """The expanded main tree, without making nodes: what `pluto tree` draws. Raises MissionError."""
+    reading = _read(text_or_path, nodes, None, tree=tree, ports=None, topics=None, file=file, plugins=())
+    if reading.report.stops_loading or reading.plan is None:
+        raise MissionError(reading.report.faults.in_order())
+    return reading.plan
+
+
+def _read(
+    text_or_path: str | Path,
+    nodes: Iterable[Any],
+    blackboard: Mapping[str, Any] | None,
+    *,
+    tree: str | None,
+    ports: Mapping[str, str] | None,
+    topics: Topics | None,
+    file: str | None,
+    plugins: Sequence[str],
+    models: Sequence[str | Path] = (),
+) -> Reading:
+    faults = Faults()
+    reading = Reading(MissionFiles(faults), node_types(nodes, plugins), Board(topics), Report(faults))
+    _read_files(reading, text_or_path, file, models)
+    if reading.files.root is None or faults.has_errors:
+        return reading
+    StaticCheck(reading.files, reading.types, reading.report).run()
+    reading.main = _main_tree(reading, tree)
+    if reading.main is None:
+        return reading
+    for key, value in (blackboard or {}).items():
+        reading.board.root.write(key, value)
+    set_inputs(reading.files, reading.main, reading.board.root, ports, reading.report)
+    expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
+    reading.plan = expansion.run(reading.main)
+    for source in reading.files.trees.values():
+        if source.tree_id not in expansion.used and not faults.has_errors:
+            what = f"tree {source.tree_id!r} is not used by {reading.main.tree_id!r}"
+            reading.report.warning(source.element.place, "unused-tree", what)
+    return reading
+
+
+def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, models: Sequence[str | Path]) -> None:
+    if isinstance(text_or_path, str) and text_or_path.lstrip("\ufeff \t\r\n").startswith("<"):
+        reading.files.read_text(text_or_path, file or "")
+    else:
+        reading.files.read_file(Path(text_or_path), file or str(text_or_path))
+    for path in models:
+        reading.files.read_models(Path(path), str(path))
+    if models:
+        for model in reading.files.node_models.values():
+            reading.types.setdefault(model.name, _foreign(model))
+
+
+def _foreign(model: Any) -> NodeType:
+    from pluto_bt.trees.ports import PortModel
+
+    ports = {port.name: PortModel(port.name, port.direction, default=port.default, required=False) for port in model.ports.values()}
+    children = {"Control": (1, None), "Decorator": (1, 1)}.get(model.tag, (0, 0))
+    return NodeType(model.name, model.tag, ports, None, children)  # type: ignore[arg-type]
+
+
+def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
+    """The tree asked for, else `main_tree_to_execute`, else the only one, else the only one that no other refers to."""
+    files, report = reading.files, reading.report
+    assert files.root is not None  # the caller has read a document
+    known = ", ".join(files.trees) or "none"
+    if not files.trees:
+        report.error(files.root.place, "no-tree", "the mission has no tree", expected='<BehaviorTree ID="…">', found="none")
+        return None
+    attribute = files.root.attributes.get("main_tree_to_execute")
+    name = asked if asked is not None else attribute.value if attribute is not None else None
+    if name is not None:
+        if name not in files.trees:
+            place = main_place(files.root) if asked is None else Place("--tree")
+            mend = did_you_mean(name, files.trees)
+            report.error(place, "unknown-tree", f"there is no tree {name!r}", expected=f"one of: {known}", found=name, mend=mend)
+            return None
+        return files.trees[name]
+    if len(files.trees) == 1:
+        return next(iter(files.trees.values()))
+    return _unreferenced(reading, known)
+
+
+def _unreferenced(reading: Reading, known: str) -> TreeSource | None:
+    files = reading.files
+    assert files.root is not None  # as above
+    referred: set[str] = set()
+    for source in files.trees.values():
+        waiting = list(source.element.children)
+        while waiting:
+            element = waiting.pop()
+            waiting.extend(element.children)
+            if element.tag == "SubTree" and element.get("ID") != source.tree_id:
+                referred.add(element.get("ID"))
+    free = [source for source in files.trees.values() if source.tree_id not in referred]
+    if len(free) == 1:
+        return free[0]
+    found = f"{len(free)} trees that no other refers to"
+    what = "which tree is the main one is not said"
+    mend = f'add main_tree_to_execute="{(free or list(files.trees.values()))[0].tree_id}" to <root>, or give --tree'
+    reading.report.error(files.root.place, "no-main-tree", what, expected=f"one of: {known}", found=found, mend=mend)
+    return None
+
+
+def _monotonic_clock() -> MissionClock:
+    from pluto_bt.runtime.clock import MonotonicClock
+
+    return MonotonicClock()

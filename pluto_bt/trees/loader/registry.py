@@ -1,0 +1,96 @@
+"""The node types that a mission may use: those built in, every py_trees leaf with ports, and models of foreign ones."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from py_trees.ports import get_ports_registry
+
+import pluto_bt.behaviours.catalogue  # noqa: F401  # the library's own leaves enter py_trees' registry by being imported
+from pluto_bt.trees.controls import CONTROLS
+from pluto_bt.trees.decorators import DECORATORS
+from pluto_bt.trees.engine.node import DecoratorNode, Node
+from pluto_bt.trees.leaves import LEAVES
+from pluto_bt.trees.ports import PortModel, models_of_class
+
+EXPLICIT_TAGS: Final = ("Action", "Condition", "Control", "Decorator", "SubTree")
+_FORBIDDEN = re.compile(r"""[<>&"'/\\:*?|. \t\r\n\x00-\x1f\x7f]""")
+
+
+@dataclass(frozen=True)
+class NodeType:
+    """One type of node.
+
+    Attributes:
+        kind: Action, Condition, Control or Decorator.
+        make: the class; None for a model without implementation.
+        children: fewest and most children while ticking (None: no limit).
+        builtin: True for the nodes of BehaviorTree.CPP itself.
+    """
+
+    name: str
+    kind: str
+    ports: dict[str, PortModel] = field(default_factory=dict)
+    make: Any = None
+    children: tuple[int, int | None] = (0, 0)
+    builtin: bool = False
+    description: str = ""
+
+
+def name_problem(name: str) -> str:
+    """Why `name` cannot be the ID of a tree or a node type, or ""."""
+    if not name:
+        return "it is empty"
+    if name.lower() == "root":
+        return "'root' is reserved"
+    found = _FORBIDDEN.search(name)
+    return f"character {found[0]!r} is not allowed" if found else ""
+
+
+def is_port_name(name: str) -> bool:
+    """True if an attribute of this name is a port; others are `name`, `ID`, conditions and private ones."""
+    return bool(name) and name[0].isalpha() and name not in ("name", "ID")
+
+
+def builtin_types() -> dict[str, NodeType]:
+    """The nodes of BehaviorTree.CPP."""
+    found = {}
+    for name, kind in [*CONTROLS.items(), *DECORATORS.items(), *LEAVES.items()]:
+        found[name] = _own_type(name, kind, builtin=True)
+    return found
+
+
+def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[str, NodeType]:
+    """Every type by name: registered py_trees leaves, then `nodes`, then the built-in ones, later ones hiding earlier.
+
+    Args:
+        nodes: classes of leaves (py_trees' `BehaviourWithPorts`), or of our own ControlNode and DecoratorNode.
+        plugins: modules to import first; what they define is registered by that.
+    """
+    for plugin in plugins:
+        importlib.import_module(plugin)
+    registry = get_ports_registry()
+    tags = {cls: tag for tag, cls in registry.items()}
+    types = {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
+    for cls in nodes:
+        name = tags.get(cls, cls.__name__)
+        types[name] = _own_type(name, cls, builtin=False) if issubclass(cls, Node) else _leaf_type(name, cls)
+    return types | builtin_types()
+
+
+def _own_type(name: str, cls: type[Node], *, builtin: bool) -> NodeType:
+    children: tuple[int, int | None] = (1, 1) if issubclass(cls, DecoratorNode) else getattr(cls, "CHILDREN", (0, 0))
+    return NodeType(name, cls.KIND, cls.PORTS, cls, children, builtin, _first_line(cls))
+
+
+def _leaf_type(tag: str, cls: Any) -> NodeType:
+    kind = "Condition" if getattr(cls, "KIND", "Action") == "Condition" else "Action"
+    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_first_line(cls))
+
+
+def _first_line(cls: Any) -> str:
+    return (cls.__dict__.get("__doc__") or "").strip().split("\n")[0]

@@ -1,0 +1,228 @@
+"""Checks every tree as it is written, used or not: tags, children, attributes, literals, scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from pluto_bt.source import did_you_mean
+from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
+from pluto_bt.trees.controls.parallel import absolute_count
+from pluto_bt.trees.engine.conditions import CONDITIONS
+from pluto_bt.trees.loader.files import MissionFiles, TreeSource
+from pluto_bt.trees.loader.pointers import is_checked_as_literal, key_of
+from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, NodeType, is_port_name
+from pluto_bt.trees.loader.report import Report
+from pluto_bt.trees.ports import PortModel, range_problem
+from pluto_bt.trees.script import ScriptSyntaxError, parse_script
+from pluto_bt.trees.values import BOOL, INT, SCRIPT, STATUS, STRING, has_trailing_text
+
+TOOL_ATTRIBUTES = ("_description", "_uid", "_fullpath", "_autoremap")
+
+
+class StaticCheck:
+    """One pass over all trees of all files."""
+
+    def __init__(self, files: MissionFiles, types: Mapping[str, NodeType], report: Report) -> None:
+        self._files, self._types, self._report = files, types, report
+
+    def run(self) -> None:
+        """Check everything; faults go to the report."""
+        for tree in self._files.all_trees:
+            self._check_tree(tree)
+
+    def _check_tree(self, tree: TreeSource) -> None:
+        attribute = tree.element.attributes.get("ID")
+        if attribute is not None and tree.tree_id in self._types:
+            what = f"tree {tree.tree_id!r} has the name of a node type"
+            self._report.error(attribute.value_place, "id-is-node", what, expected="another ID", found=tree.tree_id)
+        waiting = list(reversed(tree.element.children))
+        while waiting:
+            element = waiting.pop()
+            self._check_element(element)
+            waiting.extend(reversed(element.children))
+
+    def _check_element(self, element: XmlElement) -> None:
+        self._check_conditions(element)
+        if element.tag == "SubTree":
+            self._check_subtree(element)
+            return
+        node_type = self.type_of(element)
+        if node_type is None:
+            self._unknown_node(element)
+            return
+        self._check_children(element, node_type)
+        self._check_ports(element, node_type)
+        if node_type.name in ("Parallel", "ParallelAll"):
+            self._check_thresholds(element)
+
+    def type_of(self, element: XmlElement) -> NodeType | None:
+        """The type of an element, in compact or explicit form."""
+        return self._types.get(element.get("ID") if element.tag in EXPLICIT_TAGS else element.tag)
+
+    def _unknown_node(self, element: XmlElement) -> None:
+        explicit = element.tag in EXPLICIT_TAGS
+        name = element.get("ID") if explicit else element.tag
+        if explicit and not name:
+            self._report.error(element.place, "missing-id", f"<{element.tag}> needs an ID", expected="the name of a node type")
+            return
+        place = element.attributes["ID"].value_place if explicit else element.place
+        mend = did_you_mean(name, self._types)
+        if name in self._files.trees:
+            mend = f'write <SubTree ID="{name}"/>'
+        elif name in self._files.node_models:
+            mend = "the file has a model of it, but no implementation is loaded: give one with --plugin"
+        self._report.error(place, "unknown-node", f"unknown node <{name}>", expected="a node type; `pluto nodes` lists them", found=name, mend=mend)
+
+    def _check_subtree(self, element: XmlElement) -> None:
+        attribute = element.attributes.get("ID")
+        if attribute is None or not attribute.value:
+            self._report.error(element.place, "missing-id", "<SubTree> needs an ID", expected="the ID of a tree")
+        elif attribute.value in self._types:
+            what = f"{attribute.value!r} is a node type, not a tree"
+            self._report.error(attribute.value_place, "id-is-node", what, expected="the ID of a tree", mend=f"write <{attribute.value}/>")
+        if element.children:
+            what = "a <SubTree> has no children"
+            self._report.error(element.children[0].place, "child-count", what, expected="0", found=str(len(element.children)))
+        autoremap = element.attributes.get("_autoremap")
+        if autoremap is not None:
+            self._check_literal(autoremap, PortModel("_autoremap", kind=BOOL))
+        self._check_private(element)
+
+    def _check_children(self, element: XmlElement, node_type: NodeType) -> None:
+        count = len(element.children)
+        fewest, most = node_type.children
+        if node_type.kind in ("Action", "Condition") and count:
+            what, place = f"<{node_type.name}> has no children", element.children[0].place
+            self._report.error(place, "child-count", what, expected="0", found=str(count))
+        elif node_type.kind == "Decorator" and count != 1:
+            what = f"decorator <{node_type.name}> must have exactly one child"
+            mend = "put them in a <Sequence>" if count else ""
+            self._report.error(element.place, "child-count", what, expected="1", found=str(count), mend=mend)
+        elif node_type.kind == "Control" and count == 0:
+            what = f"<{node_type.name}> must have a child"
+            self._report.error(element.place, "child-count", what, expected="1 or more", found="0")
+        elif node_type.name == "TryCatch" and count < fewest:
+            self._report.error(element.place, "child-count", "<TryCatch> needs something to try and a clean-up", expected="2 or more", found=str(count))
+        elif node_type.kind == "Control" and not fewest <= count <= (most or count):
+            expected = str(fewest) if fewest == most else f"{fewest} to {most}"
+            what = f"<{node_type.name}> has the wrong number of children"
+            self._report.late(element.place, "child-count", what, expected=expected, found=str(count))
+        if node_type.name == "ReactiveSequence":
+            self._check_reactive(element)
+
+    def _check_reactive(self, element: XmlElement) -> None:
+        """Two quirks of BehaviorTree.CPP's loader."""
+        for child in element.children:
+            if child.tag in EXPLICIT_TAGS and child.tag != "SubTree" and child.get("ID"):
+                what = "BehaviorTree.CPP refuses the explicit form directly under <ReactiveSequence>"
+                self._report.error(child.place, "explicit-form", what, expected=f"<{child.get('ID')} …>", found=f"<{child.tag} ID=…>")
+        several = [child for child in element.children if child.tag == "AsyncSequence"]
+        if len(several) > 1:
+            what = "<ReactiveSequence> can have only one <AsyncSequence> child"
+            self._report.error(several[1].place, "several-async", what, expected="1", found=str(len(several)))
+
+    def _check_ports(self, element: XmlElement, node_type: NodeType) -> None:
+        if element.tag not in EXPLICIT_TAGS and "ID" in element.attributes:
+            place = element.attributes["ID"].place
+            what = f"<{element.tag}> takes no ID"
+            self._report.error(place, "id-in-compact-form", what, expected="no ID", mend='name="…" gives it a name of its own')
+        for attribute in element.attributes.values():
+            if is_port_name(attribute.name):
+                self._check_port(attribute, node_type)
+        self._check_private(element)
+        for port in node_type.ports.values():
+            if port.required and port.default is None and port.name not in element.attributes:
+                report = self._report.error if port.at_load else self._report.late
+                what = f'port "{port.name}" of <{node_type.name}> is missing'
+                report(element.place, "missing-port", what, expected=f'{port.name}="…": {port.form}', found="nothing")
+        if node_type.name.startswith("Switch") and "variable" not in element.attributes:
+            self._report.warning(element.place, "missing-port", f"<{node_type.name}> without variable always takes its last child")
+
+    def _check_port(self, attribute: XmlAttribute, node_type: NodeType) -> None:
+        port = node_type.ports.get(attribute.name)
+        if port is None:
+            known = ", ".join(node_type.ports) or "none"
+            mend = did_you_mean(attribute.name, node_type.ports)
+            what = f'unknown port "{attribute.name}" of <{node_type.name}>'
+            self._report.error(attribute.place, "unknown-port", what, expected=f"one of: {known}", found=attribute.name, mend=mend)
+        elif port.direction == "out":
+            if key_of(port.name, attribute.value) is None:
+                what = f'output port "{port.name}" needs an entry'
+                self._report.warning(attribute.value_place, "output-literal", what, expected="{key}", found=attribute.value, mend="put it in {braces}")
+        elif is_checked_as_literal(attribute.value) and not (port.kind in (STRING, SCRIPT) and key_of(port.name, attribute.value)):
+            self._check_literal(attribute, port)
+
+    def _check_literal(self, attribute: XmlAttribute, port: PortModel) -> None:
+        text = attribute.value
+        if port.kind is SCRIPT:
+            self.check_script(attribute)
+            return
+        if key_of(port.name, text) is not None and not port.kind.typed:
+            return
+        try:
+            value = port.kind.parse(text)
+        except ValueError as error:
+            # the names of statuses are only looked at while ticking
+            report = self._report.late if port.kind is STATUS else self._report.error
+            what = f'"{text}" does not fit port "{port.name}"'
+            report(attribute.value_place, "bad-literal", what, expected=port.form, found=text or "nothing", mend=_mend_literal(text, str(error)))
+            return
+        problem = range_problem(port, value)
+        if problem:
+            what = f'"{text}" is outside what port "{port.name}" allows'
+            self._report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=problem)
+        elif has_trailing_text(port.kind, text):
+            what = f'"{text}" is read as {value}'
+            self._report.warning(attribute.value_place, "trailing-text", what, expected=port.form, found=text)
+
+    def _check_conditions(self, element: XmlElement) -> None:
+        for name in CONDITIONS:
+            attribute = element.attributes.get(name)
+            if attribute is not None:
+                self.check_script(attribute)
+
+    def check_script(self, attribute: XmlAttribute) -> None:
+        """The syntax of a script, with the place of the fault inside it."""
+        try:
+            parse_script(attribute.value)
+        except ScriptSyntaxError as error:
+            what = f"script of {attribute.name}: {error.message}"
+            self._report.error(attribute.place_at(error.position), "script-syntax", what, expected=error.expected, found=error.found)
+
+    def _check_private(self, element: XmlElement) -> None:
+        """Attributes with `_` in front are ignored, so a misspelt condition would be too."""
+        known = (*CONDITIONS, *TOOL_ATTRIBUTES)
+        for name, attribute in element.attributes.items():
+            if not is_port_name(name) and name not in (*known, "name", "ID"):
+                what = f'attribute "{name}" is ignored'
+                self._report.warning(attribute.place, "ignored-attribute", what, expected="one of: " + ", ".join(known), mend=did_you_mean(name, known))
+
+    def _check_thresholds(self, element: XmlElement) -> None:
+        count = len(element.children)
+        values: dict[str, int] = {}
+        for name in ("success_count", "failure_count", "max_failures"):
+            attribute = element.attributes.get(name)
+            if attribute is None:
+                continue
+            try:
+                values[name] = INT.parse(attribute.value)
+            except ValueError:
+                continue  # an entry, or told already
+            if absolute_count(values[name], count) > count:
+                what = f"{name} is more than the number of children"
+                self._report.late(attribute.value_place, "threshold", what, expected=f"at most {count}", found=attribute.value)
+        needed = absolute_count(values.get("success_count", -1), count)
+        limit = values.get("failure_count", 1)
+        if element.tag != "ParallelAll" and count >= absolute_count(limit, count) > count - needed + 1:
+            what = f"failure_count {limit} has no effect: {count - needed + 1} failures already end it"
+            place = element.attributes["failure_count"].value_place if "failure_count" in element.attributes else element.place
+            self._report.warning(place, "unreachable-threshold", what, expected=f"at most {count - needed + 1}", found=str(limit))
+
+
+def _mend_literal(text: str, problem: str) -> str:
+    bare = text.strip()
+    if bare != text and bare:
+        return "remove the blanks"
+    return f"{problem}; {{{text}}} would read an entry" if text.isidentifier() else problem
+
+

@@ -1,0 +1,221 @@
+"""A loaded mission: ticking, halting, and what can be asked of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+from pluto_bt.behaviours.ports import text_of
+from pluto_bt.trees.board_view import BoardView
+from pluto_bt.trees.controls import ReactiveSequence, Sequence, TryCatch
+from pluto_bt.trees.decorators import ForceFailure, Inverter
+from pluto_bt.trees.engine.context import Context
+from pluto_bt.trees.engine.errors import StepError, TickError
+from pluto_bt.trees.engine.leaf import told
+from pluto_bt.trees.engine.node import reset
+from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
+from pluto_bt.trees.scopes import Board
+from pluto_bt.trees.tracked import NodeState, Tracked
+
+
+class Mission:
+    """One instance of a main tree. Two missions share nothing.
+
+    Attributes:
+        name: the ID of the main tree.
+        root: its first node, a py_trees behaviour.
+        blackboard: the root entries, a mapping.
+    """
+
+    def __init__(self, name: str, root: Any, tracked: list[Tracked], board: Board, context: Context) -> None:
+        self.name, self.root = name, root
+        self.blackboard = BoardView(board.root)
+        self.ticks = 0
+        self._tracked, self._context = tracked, context
+        self._own_steps: dict[int, Callable[[], Result]] = {}
+        self._make_paths_unique()
+
+    # -- ticking
+
+    def tick_once(self) -> str:
+        """One tick, repeated while the root is RUNNING and a node has asked for another: "SUCCESS", "FAILURE", "RUNNING" or "SKIPPED".
+
+        Raises: TickError if a node broke its promise; the tree is halted before.
+        """
+        return self._tick(again=True)
+
+    def tick_exactly_once(self) -> str:
+        """One tick of the root, whatever nodes ask for. Raises TickError as `tick_once`."""
+        return self._tick(again=False)
+
+    def _tick(self, again: bool) -> str:
+        context, root = self._context, self.root
+        self.ticks += 1
+        try:
+            self._before_tick()
+            result: Result = root.step()
+            while again and result is RUNNING and context.woken:
+                self._before_tick()
+                result = root.step()
+        except Exception as error:
+            raise self._tick_error(error) from error
+        if result is SUCCESS or result is FAILURE:
+            reset(root)
+        return NAME_OF_STATUS[result]
+
+    def _before_tick(self) -> None:
+        context = self._context
+        context.skipped.clear()
+        context.fire_due()
+        context.woken = False
+        if context.late_error is not None:
+            error, context.late_error = context.late_error, None
+            raise error
+
+    def _tick_error(self, error: Exception) -> TickError:
+        try:
+            self.halt()
+        except TickError:
+            pass  # the first error is the one to tell
+        return self._told(error)
+
+    def _told(self, error: Exception) -> TickError:
+        node = error.node if isinstance(error, StepError) else self.root
+        reason = error.reason if isinstance(error, StepError) else told(error)
+        tracked = next((one for one in self._tracked if one.node is node), self._tracked[0])
+        place = tracked.plan.element.place
+        return TickError(tracked.path, tracked.plan.type_name, place.file, place.line, reason)
+
+    def halt(self) -> None:
+        """Interrupt everything that is RUNNING; afterwards all nodes are IDLE.
+
+        As in BehaviorTree.CPP every node is then told once more, which runs its `_onHalted` script whether it was RUNNING or not.
+        Raises: TickError with the first error of a node, after all have been halted.
+        """
+        errors: list[Exception] = []
+        for tracked in self._tracked:
+            if tracked.node.status is not IDLE:
+                tracked.node.last = tracked.node.status
+        _attempt(self.root.halt, errors)
+        for tracked in self._tracked:
+            _attempt(tracked.node.halt, errors)
+        for tracked in self._tracked:
+            tracked.node.status = IDLE  # also of one whose halt hook raised
+        if errors:
+            raise self._told(errors[0]) from errors[0]
+
+    # -- asking
+
+    def statuses(self) -> dict[str, str]:
+        """What each node told its parent last, by path; "IDLE" if it was never ticked."""
+        skipped = self._skipped()
+        return {tracked.path: tracked.last(skipped) for tracked in self._tracked}
+
+    def node_states(self) -> list[NodeState]:
+        """Every node, depth first, with its status now. `since_s` is as fine as the calls: call it after each tick."""
+        skipped, now_s = self._skipped(), self._context.clock.now_s()
+        return [tracked.state(tracked.status(skipped), now_s) for tracked in self._tracked]
+
+    def active_leaf(self) -> str:
+        """The path of the deepest RUNNING node, the first one where several are; "" if none is."""
+        best: Tracked | None = None
+        for tracked in self._tracked:
+            is_open = any(child.status is RUNNING for child in tracked.node.children)
+            if tracked.node.status is RUNNING and not is_open and (best is None or tracked.plan.depth > best.plan.depth):
+                best = tracked
+        return best.path if best is not None else ""
+
+    def deciding_node(self) -> Tracked | None:
+        """The node whose FAILURE the mission's is, usually a leaf: followed down from the root; None if the root did not fail."""
+        by_node = {id(tracked.node): tracked for tracked in self._tracked}
+        node = self.root
+        if _last(node) is not FAILURE:
+            return None
+        while (child := _culprit(node)) is not None:
+            node = child
+        return by_node[id(node)]
+
+    def deciding_reason(self) -> str:
+        """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if the root did not fail."""
+        decider = self.deciding_node()
+        if decider is None:
+            return ""
+        outputs: dict[str, Any] = getattr(decider.node, "last_outputs", {})
+        return str(outputs.get("reason") or decider.node.feedback_message or decider.plan.name)
+
+    def deciding_text(self) -> str:
+        """The sentence of the deciding leaf: its name and its feedback; "" if the root did not fail."""
+        decider = self.deciding_node()
+        return "" if decider is None else f"{decider.path}: {decider.node.feedback_message}".rstrip(": ")
+
+    def status_line(self) -> str:
+        """One letter a node, depth first: I, R, S, F, K (skipped). Cheap; equal lines mean that no status changed."""
+        skipped = self._skipped()
+        return "".join([tracked.letter(skipped) for tracked in self._tracked])
+
+    def outputs(self) -> dict[str, str]:
+        """What the root's output ports gave, as text: for a mission that is a single leaf."""
+        return {name: text_of(value) for name, value in getattr(self.root, "last_outputs", {}).items()}
+
+    def attach(self, robot: Any) -> None:
+        """Join a robot that was not there yet when the mission was loaded."""
+        self.blackboard.robot = robot
+
+    def node_in(self, frame: FrameType | None) -> str:
+        """The path of the node at work in a stack of frames (innermost first to be looked at), "" if there is none."""
+        paths = {id(tracked.node): tracked.path for tracked in self._tracked}
+        while frame is not None:
+            for value in (frame.f_locals.get("self"), frame.f_locals.get("leaf")):
+                if id(value) in paths:
+                    return paths[id(value)]
+            frame = frame.f_back
+        return ""
+
+    def replace_step(self, name: str, step: Callable[[], Result] | None) -> bool:
+        """Let `step` stand in for that of all leaves called `name` (by name, type or path), None = their own again. False if there is none.
+
+        World scripts let leaves fail with it.
+        """
+        found = [one for one in self._tracked if not one.node.children and name in (one.plan.name, one.plan.type_name, one.path)]
+        for tracked in found:
+            own = self._own_steps.setdefault(id(tracked.node), tracked.node.step)
+            tracked.node.step = own if step is None else step
+        return bool(found)
+
+    def nodes(self) -> list[Tracked]:
+        """Every node with its plan, depth first; for dumps and checks."""
+        return list(self._tracked)
+
+    def _skipped(self) -> set[int]:
+        return {id(node) for node in self._context.skipped}
+
+    def _make_paths_unique(self) -> None:
+        """BehaviorTree.CPP lets two leaves have one path; here the later one carries its number."""
+        seen: set[str] = set()
+        for tracked in self._tracked:
+            if tracked.path in seen:
+                tracked.path = f"{tracked.path}::{tracked.plan.uid}"
+            seen.add(tracked.path)
+
+
+def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
+    try:
+        halt()
+    except Exception as error:
+        errors.append(error)
+
+
+def _last(node: Any) -> Result:
+    result: Result = node.last if node.status is IDLE else node.status
+    return result
+
+
+def _culprit(node: Any) -> Any:
+    """The child that made `node` fail: a sequence ends with the first that fails, others with the last; below an Inverter one succeeded."""
+    failed = [child for child in node.children if _last(child) is FAILURE]
+    if failed:
+        return failed[0] if isinstance(node, (Sequence, ReactiveSequence, TryCatch)) else failed[-1]
+    if isinstance(node, (Inverter, ForceFailure)):
+        return next((child for child in node.children if _last(child) is SUCCESS), None)
+    return None
