@@ -84,6 +84,15 @@ def why(client: Client, words: Sequence[str], out: TextIO) -> int:
     return DONE
 
 
+def _mission(op: str) -> Callable[[Client, Sequence[str], TextIO], int]:
+    def act(client: Client, words: Sequence[str], out: TextIO) -> int:
+        _numbers(words, 0)
+        client.request("mission", op=op)
+        return status(client, (), out)
+
+    return act
+
+
 COMMANDS: dict[str, Command] = {
     "stop": Command("stop", "zero velocity at once; works for anyone, at any time", stop),
     "goto": Command("goto X Y", "drive to a place on the map (metres)", goto),
@@ -91,6 +100,9 @@ COMMANDS: dict[str, Command] = {
     "pose": Command("pose", "where the robot believes to be", pose),
     "tree": Command("tree", "the tree now", tree),
     "status": Command("status", "the mission, and who drives", status),
+    "pause": Command("pause", "pause the mission", _mission("pause")),
+    "resume": Command("resume", "go on with the mission", _mission("resume")),
+    "abort": Command("abort", "end the mission", _mission("abort")),
     "why": Command("why", "why the robot is, or is not, moving", why),
 }
 

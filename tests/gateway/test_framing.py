@@ -109,7 +109,8 @@ ATTACKS = [
 @pytest.mark.parametrize(("stream", "code", "line", "column"), ATTACKS, ids=[repr(attack[0][:40]) for attack in ATTACKS])
 def test_an_attack_gets_its_code_and_place(stream: bytes, code: str, line: int, column: int) -> None:
     _, error = run([stream])
-    assert error is not None and (error.code, error.line, error.column) == (code, line, column), error and (error.code, error.text, error.line, error.column)
+    assert error is not None
+    assert (error.code, error.line, error.column) == (code, line, column), error.text
     if len(stream) < 2 * BIG:
         _, bit_by_bit = run(bytewise(stream))
         assert bit_by_bit is not None and bit_by_bit.code == code
@@ -133,10 +134,11 @@ def test_strangers_are_told_what_this_port_is() -> None:
     assert "looks like TLS" in str(run([b"\x16\x03\x01"])[1])
 
 
-WORDS = st.sampled_from(
-    [b"<", b">", b"/>", b"<a>", b"</a>", b"<a/>", b"<mission>", b"</mission>", b"<!--", b"-->", b"<![CDATA[", b"]]>", b"<?xml version='1.0'?>", b"&amp;"]
-    + [b"&x;", b"<!DOCTYPE", b"<?p?>", b' b="', b"'", b'"', b"\n", b" ", b"text", "é".encode(), b"\xff", b"\x00", b"<a b='1' c=\"&gt;\">", b"x" * 70]
-)
+WORDS = st.sampled_from([
+    b"<", b">", b"/>", b"<a>", b"</a>", b"<a/>", b"<mission>", b"</mission>", b"<!--", b"-->", b"<![CDATA[", b"]]>", b"<?xml version='1.0'?>",
+    b"&amp;", b"&x;", b"<!DOCTYPE", b"<?p?>", b' b="', b"'", b'"', b"\n", b" ", b"text", "é".encode(), b"\xff", b"\x00", b"<a b='1' c=\"&gt;\">",
+    b"x" * 70,
+])  # fmt: skip
 
 
 @settings(max_examples=300, deadline=None)
