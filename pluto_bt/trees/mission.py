@@ -21,7 +21,6 @@ from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import NodeState, Tracked
 
 
-LETTERS: Final = {"IDLE": "I", "RUNNING": "R", "SUCCESS": "S", "FAILURE": "F", "SKIPPED": "K"}
 
 
 class Mission:
