@@ -24,6 +24,7 @@ LINE_KINDS: tuple[Literal["forbidden", "restrictive"], ...] = ("forbidden", "res
 SHADOWED: tuple[Literal["gps", "marker", "compass"], ...] = ("gps", "marker", "compass")
 MAX_SEED = 2**63 - 1
 MAX_POINTS = 200_000  # in one file
+ENOUGH_FAULTS = 200  # a file with more is not a world that someone mistyped
 MAX_SPEED_MPS = 100.0
 
 ReadMap = Callable[[Path, str, Faults], World | None]
@@ -83,13 +84,13 @@ class _WorldReading:
             fields.fault(root.place, "too-many-nodes", "the world has too many points", expected=f"at most {MAX_POINTS}", found="more")
             return None
         name, seed = fields.text("name", Path(self._shown).stem), fields.whole("seed", 0, MAX_SEED)
+        fields.done((*self._readers, "script"))
         for child in sorted(root.children, key=lambda child: child.tag != "map"):  # what a map brings along has its names first
-            if child.tag in self._readers:
+            if child.tag in self._readers and len(self._faults) < ENOUGH_FAULTS:
                 self._readers[child.tag](Fields(child, self._faults))
         for child in root.children:  # a script may stand before what it names
             if child.tag == "script":
-                self._found.script += read_script(child, self._ids, self._faults)
-        fields.done((*self._readers, "script"))
+                self._found.script += read_script(child, self._ids, self._faults, ENOUGH_FAULTS)
         return self._world(name, seed)
 
     def _world(self, name: str, seed: int) -> World:
