@@ -15,6 +15,7 @@ from pluto_bt.source import Faults, Place, XmlElement, did_you_mean
 W = TypeVar("W", bound=str)
 MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the rounding
 MAX_BAD_POINTS = 20  # told of one element
+MAX_STRANGERS = 100
 NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d{1,3})?")
 _WORD = re.compile(r"\S++")
 
@@ -43,11 +44,11 @@ class Fields:
                 expected = f"one of: {', '.join(known)}" if known else "no attributes"
                 what = f'unknown attribute "{name}" of <{tag}>'
                 self.fault(attribute.place, "unknown-attribute", what, expected=expected, found=name, mend=did_you_mean(name, known))
-        for child in self.element.children:
-            if child.tag not in children:
-                expected = f"one of: {', '.join(children)}" if children else "no elements"
-                what = f"unknown element <{child.tag}> in <{tag}>"
-                self.fault(child.place, "unknown-element", what, expected=expected, found=f"<{child.tag}>", mend=did_you_mean(child.tag, children))
+        strangers = [child for child in self.element.children if child.tag not in children]
+        for child in strangers[:MAX_STRANGERS]:
+            expected = f"one of: {', '.join(children)}" if children else "no elements"
+            what = f"unknown element <{child.tag}> in <{tag}>"
+            self.fault(child.place, "unknown-element", what, expected=expected, found=f"<{child.tag}>", mend=did_you_mean(child.tag, children))
         if not has_text and self.element.text.strip():
             found = self.element.text.split(None, 1)[0]
             self.fault(self.element.text_place, "unexpected-text", f"<{tag}> has no text", expected="attributes only", found=found)

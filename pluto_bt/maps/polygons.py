@@ -16,11 +16,15 @@ _ROWS = 128  # edges compared at a time: memory stays small
 
 def without_repeats(points: Points) -> Points:
     """The corners without any that equals the one before it; a last corner that closes the polygon is left out too."""
-    keep = np.any(points != np.roll(points, 1, axis=0), axis=1)
-    keep[0] = True
-    corners: Points = points[keep]
-    if len(corners) > 1 and np.array_equal(corners[0], corners[-1]):
-        corners = corners[:-1].copy()
+    kept: list[list[float]] = []
+    for point in points.tolist():
+        if not kept or point != kept[-1]:
+            kept.append(point)
+    if len(kept) > 1 and kept[0] == kept[-1]:
+        kept.pop()
+    if len(kept) == len(points):
+        return points
+    corners = np.array(kept)
     corners.setflags(write=False)
     return corners
 
@@ -122,6 +126,7 @@ def _meet(a: Points, b: Points, c: Points, d: Points) -> NDArray[np.bool_]:
 
 def is_flat(corners: Points) -> bool:
     """True if all corners lie on one line (a figure of eight has no net area either, but is not flat)."""
-    along = corners[np.argmax(np.sum((corners - corners[0]) ** 2, axis=1))] - corners[0]
-    offsets = corners - corners[0]
-    return bool(np.all(np.abs(along[0] * offsets[:, 1] - along[1] * offsets[:, 0]) < 1e-9))
+    points = corners.tolist()
+    x0, y0 = points[0]
+    x1, y1 = max(points, key=lambda point: abs(point[0] - x0) + abs(point[1] - y0))
+    return all(abs((x1 - x0) * (y - y0) - (y1 - y0) * (x - x0)) < 1e-9 for x, y in points)
