@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample
+from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState, Event
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
@@ -23,6 +24,7 @@ from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.runtime.watchdog import Hung, Watchdog
+from pluto_bt.source import PlutoError
 from pluto_bt.trees.mission import Mission
 
 # fmt: off
@@ -234,7 +236,7 @@ class System:
     def _on_software_fault(self, fault: FaultAction, begins: bool) -> None:
         kind, _, name = fault.device.partition(":")
         if kind == "leaf":
-            self.robot.leaf_faults[name] = fault.kind if begins else ""
+            self._leaf_fault(name, fault.kind if begins else "")
             return
         part = self._parts.get(name)
         if part is None:
@@ -248,7 +250,22 @@ class System:
             if begins and fault.kind == "hang":
                 self._hung(part)
 
+    def _leaf_fault(self, name: str, kind: str) -> None:
+        """A leaf raises, gives no status or never returns, as the world script says; "" = its own work again."""
+
+        def step() -> Any:
+            if kind == "hang":
+                if isinstance(self.scheduler, Threads):
+                    wait(threading.Event(), 1e6)
+                raise Hung(f'the world script lets leaf "{name}" hang')  # in virtual time nobody need wait for the watchdog
+            raise PlutoError(f'the world script lets leaf "{name}" {"raise" if kind == "raise" else "return None"}')
+
+        active = self.executive.core.active
+        if active is None or not active.mission.replace_step(name, step if kind else None):
+            self.say("warning", "unknown-leaf", "world", f'the world script names no leaf of this mission: "{name}"')
+
     def _hung(self, part: Part) -> None:
+        """`part` never returned: name it, or the leaf it is in, stop the robot and end the run."""
         active = self.executive.core.active
         leaf = active.mission.current_leaf() if part.module.name == "executive" and active is not None else ""
         what = f'leaf "{leaf}" never returned' if leaf else f'module "{part.module.name}" never returned'
@@ -263,13 +280,23 @@ class System:
 
     # ------------------------------------------------------------------ running
 
-    def run(self, mission: Mission) -> None:
-        """Run `mission` to its end, then bring the robot to rest. The outcome is in `ended` and in the executive."""
-        self.executive.core.start(mission)
+    def rehearse(self) -> None:
+        """Drive half a second, so that every kernel is compiled before a watchdog looks. For a system in lockstep that is then thrown away."""
+        assert isinstance(self.scheduler, Lockstep)
+        self._start()
+        self.inboxes["motion"].post("mission", ActuatorState(0.0, 10 * Avoidance.BOTH + CommandType.GOTO, (1e3, 0.0), (0.3, 0.5)))
+        self.scheduler.run_until(NS // 2)
+
+    def _start(self) -> None:
         now_ns = self.clock.now_ns()
         for row in in_start_order([part.module for part in self._parts.values()]):
             self._parts[row.name].start(now_ns)
         self.scheduler.start()
+
+    def run(self, mission: Mission) -> None:
+        """Run `mission` to its end, then bring the robot to rest. The outcome is in `ended` and in the executive."""
+        self.executive.core.start(mission)
+        self._start()
         try:
             self._until(self._is_over)
             self._settle()

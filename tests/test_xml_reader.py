@@ -284,6 +284,6 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         assert read_xml_file(tmp_path / name, name or "folder", faults, max_bytes=100) is None
     found = {fault.file: (fault.code, fault.message, fault.mend) for fault in faults.in_order()}
     assert found["patrl.xml"] == ("no-file", 'there is no file "patrl.xml"', 'did you mean "patrol.xml"?')
-    assert found["folder"][:2] == ("no-file", '"folder" is a folder, not a file')
+    assert found["folder"][:2] == ("no-file", '"folder" is a folder')
     assert found["big.xml"][0] == "too-large"
     assert found["a\0b"][0] == "no-file"

@@ -38,7 +38,7 @@ class Exchange:
         self._sent_seq.clear()
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
-        return Welcome(self._port.name, "", tuple(self._port.topics()), token, limits, first_client)
+        return Welcome(self._port.name, self._port.now_s(), tuple(self._port.topics()), token, limits, first_client)
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.replies import Error, encode
@@ -25,20 +27,19 @@ class Connection:
         self._refilled_s: float | None = None
         self.closing = False
 
-    def feed(self, data: bytes, now_s: float) -> list[Message]:
-        """The messages that `data` completes. A fault ends the stream: the error stands in `to_send` and `closing` is true.
+    def feed(self, data: bytes, now_s: float) -> Iterator[Message]:
+        """The messages that `data` completes, one by one, so that the replies to them stand before the error that may follow.
 
-        A client that is too fast is closed, but a stop behind its flood is still heard.
+        A fault ends the stream: the error stands in `to_send` and `closing` is true. A client that is too fast is closed, but a
+        stop behind its flood is still heard. The iterator must be used up.
         """
-        messages: list[Message] = []
         try:
             for message in self._framer.feed(data) if self._framer else ():
                 if message.element.tag in STOPS or (not self.closing and self._may_pass(message, now_s)):
-                    messages.append(message)
+                    yield message
         except FramingError as error:
             self._framer = None
             self.fail(error.code, error.text, line=error.line, column=error.column)
-        return messages
 
     def _may_pass(self, message: Message, now_s: float) -> bool:
         """Take one token; without one the client is closed with `rate-limit`."""

@@ -70,12 +70,12 @@ def grid_entry(rows: int, columns: int, x: float, y: float, dx: float, dy: float
 
 @inline_kernel
 def entry_time(at: float, size: int, per: float) -> float:
-    """When the ray is within [0, size) on one axis: at once, at its near end, or `FAR` = never."""
+    """When the ray comes into [0, size) on one axis: at its near end; `FAR` = never; -1 = it is inside already."""
     if at < 0.0:
         return -at * per if 0.0 < per < FAR else FAR
     if at >= size:
         return (size - at) * per if per < 0.0 else FAR
-    return 0.0
+    return -1.0
 
 
 @inline_kernel
@@ -101,7 +101,6 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
     way = (0 if right else 1) + (0 if up else 2)
     if free[way, iy, ix] == INSIDE:
         return t
-    end = min(reach, ((columns if right else 0) - x) * per_x, ((rows if up else 0) - y) * per_y)
     # the edge of a square of side s lies at line ix + s for a ray to the right, at ix + 1 - s for one to the left
     way_x, way_y = (1 if right else -1), (1 if up else -1)
     near_x, near_y = (0 if right else 1), (0 if up else 1)
@@ -113,7 +112,7 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
         ty = (iy + near_y + way_y * side - y) * per_y
         leaps_x = tx < ty
         t = tx if leaps_x else ty
-        if t >= end:
+        if t >= reach:
             return reach
         across = (y if leaps_x else x) + t * (dy if leaps_x else dx)
         cell = int(across)
@@ -122,6 +121,8 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
             cell = settle(at, across, per, t, i, side, rising, leaps_x)
         ix = ix + way_x * side if leaps_x else cell
         iy = cell if leaps_x else iy + way_y * side
+        if ix < 0 or iy < 0 or ix >= columns or iy >= rows:
+            return reach
 
 
 @kernel

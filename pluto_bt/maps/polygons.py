@@ -16,7 +16,10 @@ _ROWS = 256  # edges compared with all others at a time: memory stays small
 def without_repeats(points: Points) -> Points:
     """The corners without any that equals the one before it; a last corner that closes the polygon is left out too."""
     keep = np.any(points != np.roll(points, 1, axis=0), axis=1)
-    corners: Points = points[keep] if np.any(keep) else points[:1]
+    keep[0] = True
+    corners: Points = points[keep]
+    if len(corners) > 1 and np.array_equal(corners[0], corners[-1]):
+        corners = corners[:-1].copy()
     corners.setflags(write=False)
     return corners
 

@@ -13,7 +13,7 @@ from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees import Mission
 
 SHOW_MODULES_EVERY = 10
 

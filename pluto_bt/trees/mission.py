@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.board_view import BoardView
@@ -38,6 +38,7 @@ class Mission:
         self.blackboard = BoardView(board.root)
         self.ticks = 0
         self._tracked, self._context = tracked, context
+        self._own_steps: dict[int, Callable[[], Result]] = {}
         self._make_paths_unique()
 
     # -- ticking
@@ -167,7 +168,30 @@ class Mission:
     def status_line(self) -> str:
         """One letter a node, depth first: its status (I R S F), or K if it was skipped in the last tick."""
         skipped = self._skipped()
-        return "".join(LETTERS[tracked.status(skipped)] for tracked in self._tracked)
+        return "".join([tracked.letter(skipped) for tracked in self._tracked])
+
+    def attach(self, robot: Any) -> None:
+        """Join a robot that was not there yet when the mission was loaded."""
+        self.blackboard.robot = robot
+
+    def replace_step(self, name: str, step: Callable[[], Result] | None) -> bool:
+        """Let `step` stand in for that of all leaves called `name` (by name, type or path), None = their own again. False if there is none.
+
+        World scripts let leaves fail with it.
+        """
+        found = [one for one in self._tracked if not one.node.children and name in (one.plan.name, one.plan.type_name, one.path)]
+        for tracked in found:
+            node = tracked.node
+            own = self._own_steps.setdefault(id(node), node.step)
+            node.step = own if step is None else self._begun(node, step)
+        return bool(found)
+
+    def _begun(self, node: Any, step: Callable[[], Result]) -> Callable[[], Result]:
+        def begin() -> Result:
+            self._context.current = node
+            return step()
+
+        return begin
 
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""

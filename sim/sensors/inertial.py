@@ -12,7 +12,7 @@ from sim.noise import Noise
 from sim.simtime import NS, period_ns
 
 GRAVITY_MPS2 = 9.80665
-ROCKING_S = 0.15  # a robot does not tilt at once when its point crosses the edge of a slope: half a wheel base at 0.5 m/s is 0.5 s
+ROCKING_S = 0.15  # a robot does not tilt at once when its point crosses the edge of a slope
 
 
 class InertialSensor:
