@@ -35,7 +35,7 @@ class Node(Behaviour):
 
     def __init__(self, name: str = "") -> None:
         self.name = name or type(self).__name__
-        self.id = uuid.UUID(int=next(_COUNT))  # counted: the same in every run once a mission has numbered its nodes
+        self.number = next(_COUNT)  # a mission numbers its nodes anew, so that they are the same in every run
         self.status: Status = IDLE
         self.last: Result = IDLE
         self.children: list[Any] = []
@@ -113,6 +113,11 @@ class Node(Behaviour):
         if self.status is RUNNING:
             self.halt()
         self.status = new_status
+
+    @property
+    def id(self) -> uuid.UUID:  # type: ignore[override]  # py_trees assigns a random one
+        """The number of the node as py_trees wants it."""
+        return uuid.UUID(int=self.number)
 
     @property
     def iterator(self) -> Iterator[Behaviour]:  # type: ignore[override]  # py_trees assigns it, we never do

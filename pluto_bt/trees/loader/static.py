@@ -213,11 +213,11 @@ class StaticCheck:
                 what = f"{name} is more than the number of children"
                 self._report.late(attribute.value_place, "threshold", what, expected=f"at most {count}", found=attribute.value)
         needed = absolute_count(values.get("success_count", -1), count)
-        limit = values.get("failure_count", 1)
-        if element.tag != "ParallelAll" and count >= absolute_count(limit, count) > count - needed + 1:
-            what = f"failure_count {limit} has no effect: {count - needed + 1} failures already end it"
-            place = element.attributes["failure_count"].value_place if "failure_count" in element.attributes else element.place
-            self._report.warning(place, "unreachable-threshold", what, expected=f"at most {count - needed + 1}", found=str(limit))
+        limit, most = values.get("failure_count"), count - needed + 1  # so many failures already leave too few children to succeed
+        if limit is not None and count >= needed and count >= absolute_count(limit, count) > most:
+            what = f"failure_count {limit} has no effect: {most} failures already end it"
+            place = element.attributes["failure_count"].value_place
+            self._report.warning(place, "unreachable-threshold", what, expected=f"at most {most}", found=str(limit))
 
 
 def _mend_literal(text: str, problem: str) -> str:
