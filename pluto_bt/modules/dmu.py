@@ -71,7 +71,7 @@ class Dmu(Relay[InertialRecord]):
             dps = math.degrees(self.bias.bias_radps)
             self._say("info", "gyro-bias-known", "dmu", f"gyro bias {dps:.4f} deg/s from {self.bias.taken} samples at rest")
         elif news is BiasNews.MOVED:
-            text = "the robot moved while the gyro's bias was measured: the wheels give the heading; starting again"
+            text = "the robot moved while the gyro's bias was measured: until it stands still the wheels stand in; starting again"
             self._say("warning", "gyro-bias-refused", "dmu", text)
         elif news is BiasNews.UNSTEADY:
             spread = math.degrees(self.bias.spread_radps)
