@@ -116,7 +116,7 @@ def test_a_killed_gateway_comes_back_and_loses_nothing(running: Running) -> None
     pid = running.link.pid
     assert pid is not None
     os.kill(pid, signal.SIGKILL)
-    with pytest.raises(GatewayError, match="closed|gone"):
+    with pytest.raises(GatewayError, match=r"closed|gone"):
         while True:
             first.receive(WAIT_S)
     with running.client(name="anna", session="s1") as again:

@@ -35,7 +35,7 @@ def test_stop_pose_tree_and_status_print_one_answer(running: Running) -> None:
     [(RunState("succeeded"), (0, "succeeded\n")), (RunState("failed", "stuck", "a wall is near"), (1, "failed: stuck: a wall is near\n"))],
 )
 def test_goto_takes_the_lease_drives_and_lets_go(running: Running, end: RunState, expected: tuple[int, str]) -> None:
-    running.on_step = lambda: running.robot.runs.update({run: end for run in running.robot.runs})
+    running.on_step = lambda: running.robot.runs.update(dict.fromkeys(running.robot.runs, end))
     assert say(running, "goto", "3", "-4.5") == expected
     assert running.robot.did == [("run", "GoTo", {"goal": "3;-4.5"}, 0.0)]
     assert "nobody drives" in say(running, "status")[1]
