@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -59,14 +60,15 @@ class Runner:
         result, reason, text = self._outcome()
         sample = system.board.newest("Localization/Pose")
         believed = sample.value if sample is not None and isinstance(sample.value, Pose) else None
-        contacts = [_contact(contact, "collision") for contact in simulator.collisions] + [_contact(contact, "hit-by") for contact in simulator.hit_by]
+        contacts = [_contact(contact, "collision") for contact in simulator.collisions]
+        contacts += [_contact(contact, "hit-by") for contact in simulator.hit_by]
         clearance_m = simulator.min_clearance_m
         activity = system.executive.core.mission
         return RunResult(
             result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=wall_time_s,
             ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
             hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
-            estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], believed.pose[3]),
+            estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
             trace_sha256=system.trace.sha256(), leaves=self.mission.statuses(), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
         )  # fmt: skip

@@ -18,6 +18,7 @@ from pluto_bt.gateway.listen import Address
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_file import RobotFile
+from pluto_bt.modules.robot_link import RobotLink
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wait
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
@@ -26,7 +27,7 @@ from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.source import PlutoError
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees import Mission, load_mission
 
 # fmt: off
 MODULES: tuple[Module, ...] = (
@@ -70,7 +71,7 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
-    load: Callable[[str], Mission] | None = None
+    load: Callable[[str], Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
 
@@ -127,17 +128,12 @@ class System:
     # ------------------------------------------------------------------ making
 
     def _make_context(self) -> Context:
-        from pluto_bt.modules.robot_link import RobotLink
-
         context = Context(
             board=self.board, clock=self.clock, platform=self.options.robot, inboxes=self.inboxes, devices=self.simulator.devices,
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
+            order_module=self.order_module, joined=self,
         )  # fmt: skip
         self.robot = RobotLink(context)
-        context.extras.update(
-            system=self, simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts,
-            load=self.options.load, gateway=self.options.gateway,
-        )  # fmt: skip
         return context
 
     def _make_parts(self, rows: list[Module]) -> None:
@@ -151,7 +147,7 @@ class System:
         self.scheduler = Threads(parts, self.clock) if isinstance(self.clock, MonotonicClock) else Lockstep(parts, self.clock)
         for part in parts:
             for source in part.module.wakes:
-                kind, _, name = source.rpartition("inbox:")
+                _, _, name = source.rpartition("inbox:")
                 wake = self.scheduler.waker(part.row)
                 if "inbox:" in source:
                     self.inboxes[name].on_post(wake)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 from xml.sax.saxutils import quoteattr
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
@@ -11,11 +10,8 @@ from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
-from pluto_bt.trees.executive import PAUSED, RUNNING, Activity
 from pluto_bt.trees import Mission, MissionError
-
-if TYPE_CHECKING:
-    from pluto_bt.system import System
+from pluto_bt.trees.executive import PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}
@@ -26,8 +22,7 @@ class GatewayPort:
     """Implements `RobotPort` over a `System`."""
 
     def __init__(self, context: Context) -> None:
-        self._system: System = context.extras["system"]
-        self._load_text: Callable[[str], Mission] = context.extras["load"]
+        self._system = context.system
         self._loaded: Mission | None = None
         self._errands: dict[str, Activity] = {}
         self._estop: str | None = None
@@ -171,7 +166,7 @@ class GatewayPort:
             raise RefusedError("estopped", f"emergency stop ({self._estop}); release it first")
 
     def _load(self, text: str) -> Mission:
-        mission = self._load_text(text)
+        mission = self._system.options.load(text)
         mission.attach(self._system.robot)
         return mission
 

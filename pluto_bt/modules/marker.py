@@ -15,7 +15,6 @@ from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import MarkerState, Pose
 from pluto_bt.blackboard.poses import pose_at
 from pluto_bt.modules.context import Context
-from pluto_bt.modules.post_box import post_box
 
 
 class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -37,9 +36,9 @@ class Marker:
         self._device = context.devices["marker"]
         self._board = context.board
         self._state = context.board.publisher("car/marker", "marker")
-        self._box = post_box(context)
+        self._box = context.posts
         self._start_rad = context.start_pose[2]
-        p: MarkerParameters = getattr(context.platform, "marker", None) or MarkerParameters()
+        p = context.parameters(MarkerParameters)
         self._parameters = p
         self.gate = MarkerGate(p.min_quality, math.radians(p.max_heading_error_deg), p.max_speed_mps)
 

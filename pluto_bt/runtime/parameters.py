@@ -79,7 +79,8 @@ def _value(declared: Any, raw: Any, locate: Locate, faults: Faults, path: tuple[
         return msgspec.convert(raw, declared, strict=True)
     except msgspec.ValidationError as error:
         message = str(error).replace("`", "").partition(" - at ")[0]
-        faults.error(locate(path), "bad-value", f'{".".join(path)}: {message[0].lower()}{message[1:]}', expected=_kind_text(declared), found=_shown(raw))
+        what = f"{'.'.join(path)}: {message[0].lower()}{message[1:]}"
+        faults.error(locate(path), "bad-value", what, expected=_kind_text(declared), found=_shown(raw))
         return _FAULTY
 
 
@@ -107,7 +108,8 @@ def override(table: dict[str, Any], settings: Sequence[str], kind: type[msgspec.
             continue
         known = [row.name for row in describe(kind)]
         if name not in known:
-            faults.error(place, "unknown-parameter", f'unknown parameter "{name}"', found=name, mend=did_you_mean(name, known) or "see `pluto nodes` and docs")
+            mend = did_you_mean(name, known) or "docs/platforms.md lists them"
+            faults.error(place, "unknown-parameter", f'unknown parameter "{name}"', found=name, mend=mend)
             continue
         *parents, leaf = name.split(".")
         inner = table

@@ -13,14 +13,12 @@ from pluto_bt.trees.controls.sequence import Sequence
 from pluto_bt.trees.controls.try_catch import TryCatch
 from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
+from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import NodeState, Tracked
-
-
 
 
 class Mission:

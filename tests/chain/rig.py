@@ -68,7 +68,7 @@ class Rig:
         above = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": ""}
         self.inboxes = {name: Inbox(name, self._owner(up)) for name, up in above.items()}
         context = Context(self.board, self.clock, self.platform, self.inboxes, {}, None, lambda *line: None, self.running.__getitem__)
-        context.extras["order_module"] = lambda name, run: self.running.__setitem__(name, run)
+        context.order_module = lambda name, run: self.running.__setitem__(name, run)
         self.links = {"motion": Motion(context), "avoid": Avoid(context), "drive": Drive(context)}
         self.twist = (0.0, 0.0)
         self._base = (0.0, 0.0)

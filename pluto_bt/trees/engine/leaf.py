@@ -14,8 +14,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
+from pluto_bt.trees.errors import StepError
 
 
 def bind_leaf(leaf: Any, context: Context) -> None:

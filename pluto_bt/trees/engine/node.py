@@ -19,8 +19,8 @@ from py_trees.common import BlackBoxLevel, Status
 from py_trees.logging import Logger
 
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result, Skip
+from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.ports import PortModel, PortProblem
 
 _LOGGER: Final = Logger("pluto_bt")
