@@ -93,7 +93,10 @@ def parse_real(text: str) -> float:
     found = _REAL.match(text)
     if found is None:
         raise ValueError("expected a number")
-    return float(found[0])
+    value = float(found[0])
+    if math.isinf(value) and "inf" not in found[0]:
+        raise ValueError("out of range")
+    return value
 
 
 def parse_bool(text: str) -> bool:
@@ -235,7 +238,10 @@ def kind_of_type(data_type: Any) -> Kind:
 def _list_of(item: Kind) -> Kind:
     def parse(text: str) -> list[Any]:
         if text.startswith("json:"):
-            return cast(json.loads(text[5:]))
+            try:
+                return cast(json.loads(text[5:]))
+            except RecursionError:
+                raise ValueError("it is nested too deeply") from None
         return split_list(item, text)
 
     def cast(value: Any) -> list[Any]:
@@ -313,11 +319,17 @@ def _own_text(data_type: Any) -> Kind:
         if isinstance(value, data_type):
             return value
         if isinstance(value, (int, float, tuple)):
-            return data_type.from_text(";".join(map(str, value)) if isinstance(value, tuple) else str(value))
+            return parse(";".join(map(str, value)) if isinstance(value, tuple) else str(value))
         raise ValueError(f"expected a {data_type.__name__}")
 
+    def parse(text: str) -> Any:
+        try:
+            return data_type.from_text(text)
+        except Exception as error:  # a user's reader may raise anything
+            raise ValueError(str(error) or type(error).__name__) from None
+
     form = getattr(data_type, "TEXT_FORM", f"a {data_type.__name__}")
-    return Kind(data_type.__name__, form, data_type.from_text, cast, data_type)
+    return Kind(data_type.__name__, form, parse, cast, data_type)
 
 
 def _only_objects(data_type: Any) -> Kind:

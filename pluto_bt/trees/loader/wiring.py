@@ -82,18 +82,18 @@ def wire_leaf(leaf: Any, ports: dict[str, PortModel], readers: Readers, writers:
     written: dict[str, Any] = {}
 
     def get_input(port_name: str, default: Any = None) -> Any:
-        read = readers.get(port_name)
-        if read is None:
-            if port_name not in ports or ports[port_name].direction == "out":
-                raise KeyError(f"{leaf.name}: input port {port_name!r} is not declared")
-        else:
-            try:
-                return read()
-            except MissingValue as missing:
-                problem = str(missing)
-            except PortProblem as misfit:
-                raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
-        return _fallback(leaf, ports[port_name], default, problem if read is not None else "it is not given")
+        try:
+            return readers[port_name]()
+        except MissingValue as missing:
+            return _fallback(leaf, ports[port_name], default, str(missing))
+        except PortProblem as misfit:
+            raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
+        except KeyError:
+            if port_name in readers:
+                raise
+        if port_name not in ports or ports[port_name].direction == "out":
+            raise KeyError(f"{leaf.name}: input port {port_name!r} is not declared")
+        return _fallback(leaf, ports[port_name], default, "it is not given")
 
     def set_output(port_name: str, value: Any) -> None:
         if port_name not in ports or ports[port_name].direction == "in":
