@@ -14,6 +14,7 @@ from typing import Any
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample
 from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState, Event
+from pluto_bt.gateway.listen import Address
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_file import RobotFile
@@ -46,6 +47,7 @@ MODULES: tuple[Module, ...] = (
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
+    Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
 )
 # fmt: on
 
@@ -64,10 +66,11 @@ class Options:
     map: World | None = None
     start: tuple[float, float, float] | None = None
     seed: int = 0
-    realtime: bool = False
-    speed: float = 1.0
     max_time_s: float | None = None
     trace_path: Path | None = None
+    has_gateway: bool = False
+    gateway: Address | None = None
+    load: Callable[[str], Mission] | None = None
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
 
@@ -117,7 +120,8 @@ class System:
         self._parts: dict[str, Part] = {}
         self.inboxes = {link: Inbox(link, self._owner_rule(above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        self._make_parts([row for row in modules if not row.device or row.device in self.simulator.devices])
+        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ())}
+        self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()
 
     # ------------------------------------------------------------------ making
@@ -130,13 +134,16 @@ class System:
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
         )  # fmt: skip
         self.robot = RobotLink(context)
-        context.extras.update(simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts)
+        context.extras.update(
+            system=self, simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts,
+            load=self.options.load, gateway=self.options.gateway,
+        )  # fmt: skip
         return context
 
     def _make_parts(self, rows: list[Module]) -> None:
-        made = {row.name: row.load()(self.context) for row in in_start_order(rows)}
+        made: dict[str, Any] = {row.name: row.load()(self.context) for row in in_start_order(rows)}
         self._parts = {row.name: Part(row, made[row.name], number, self) for number, row in enumerate(rows)}
-        self.executive: Any = made["executive"]
+        self.executive = made["executive"]
         self.executive.on_event = self.options.on_event
 
     def _join(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.board_view import BoardView
@@ -21,7 +21,6 @@ from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import NodeState, Tracked
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
-LETTERS: Final = {"IDLE": "I", "RUNNING": "R", "SUCCESS": "S", "FAILURE": "F", "SKIPPED": "K"}
 
 
 class Mission:
@@ -195,7 +194,10 @@ class Mission:
     def _begun(self, node: Any, step: Callable[[], Result]) -> Callable[[], Result]:
         def begin() -> Result:
             self._context.current = node
-            return step()
+            try:
+                return step()
+            except Exception as error:
+                raise StepError(node, told(error)) from error
 
         return begin
 

@@ -62,7 +62,8 @@ def story() -> Story:
 def test_a_person_types_a_session(story: Story) -> None:
     nc = story.client()
     story.robot.write("Localization/Pose", m.Pose(0.02, (1.0, 2.0, 0.0, 0.5, 0.0, 0.0)))
-    hello, pong, value = story.says(nc, '<?xml version="1.0"?>\n<hello version="1.0"/>\n<ping t="9" id="a"/><get topic="Localization/Pose" id="b"/>\n')
+    typed = '<?xml version="1.0"?>\n<hello version="1.0"/>\n<ping t="9" id="a"/><get topic="Localization/Pose" id="b"/>\n'
+    hello, pong, value = story.says(nc, typed)
     assert (hello.get("robot"), hello.get("version"), pong.get("t"), pong.get("id")) == ("pluto", "1.0", "9", "a")
     assert (value.get("id"), value.get("stamp"), value.findtext("pose")) == ("b", "0.020000", "1.0 2.0 0.0 0.5 0.0 0.0")
     assert brief(story.says(nc, "<ping/><get/><gett/>text")) == ["pong", "error invalid", "error unknown-element", "error not-well-formed"]
@@ -80,7 +81,7 @@ def test_a_person_types_a_session(story: Story) -> None:
         ("<ping>hello</ping>", "invalid <ping>: expected no text, found 'hello'"),
         ("<ping><a/></ping>", "invalid <ping>: expected no elements, found <a>"),
         ("<command target='drive' flags='0'><velocity>1</velocity></command>", "bad-value <command>: <velocity>: expected 2 numbers, found 1"),
-        ("<command target='drive' flags='0'><velocity>1 inf</velocity></command>", "bad-value <command>: <velocity>: expected finite numbers, found '1 inf'"),
+        ("<command target='drive' flags='0'><force>inf</force></command>", "bad-value <command>: <force>: expected finite numbers, found 'inf'"),
         ("<describe node='GoTo'/>", 'unknown-node <describe node="…"/> is not answered by this version; it describes topics and requests'),
         ("<get topic='sick/scan'/>", 'no-value "sick/scan" has no value yet'),
         ("<tree/>", "no-value there is no tree yet"),
@@ -159,8 +160,14 @@ def test_anyone_stops_at_once_and_what_the_stop_overtook_does_not_move(story: St
     assert story.robot.did == [("stop", "client 2")]  # before any step
     story.step()
     assert [answer.get("id") for answer in story.hears(passer)] == ["s"]
-    assert brief(story.hears(driver)) == ["error wrong-state", "error wrong-state", "result cancelled stopped"]
+    assert brief(story.hears(driver)) == ["result cancelled stopped", "error wrong-state", "error wrong-state"]
     assert not [deed for deed in story.robot.did if deed[0] in ("run", "command")]
+
+
+def test_a_run_that_is_asked_for_after_a_stop_is_not_cancelled_by_it(story: Story) -> None:
+    driver = story.client()
+    story.says(driver, '<lease op="acquire" ttl_s="60"/>')
+    assert brief(story.says(driver, "<stop/>" + RUN)) == ["ok", "ack", "progress running"]
 
 
 def test_estop_latches_until_the_holder_releases_it(story: Story) -> None:
@@ -282,6 +289,15 @@ def test_a_flood_is_cut_but_the_stop_behind_it_is_heard(story: Story) -> None:
     answers = story.hears(client)
     assert brief(answers) == ["pong"] * 200 + ["error rate-limit"]
     assert answers[-1].get("fatal") == "true"
+
+
+@pytest.mark.parametrize("cut", [1, 7, 4096])
+def test_however_a_flood_is_cut_its_stops_are_heard(story: Story, cut: int) -> None:
+    client = story.client()
+    flood = b"<ping/>" * 250 + b"<estop/>" + b"<ping/><stopper/>" * 3
+    for at in range(0, len(flood), cut):
+        client.send(flood[at : at + cut])
+    assert story.robot.did == [("estop", "client 1", "")]
 
 
 def test_a_flood_of_stops_is_a_few_stops_and_every_one_is_answered(story: Story) -> None:

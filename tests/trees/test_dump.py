@@ -84,7 +84,12 @@ def test_an_unknown_format_is_refused(mission: Mission) -> None:
         dump(mission, "png")
 
 
-@given(st.recursive(st.just("<AlwaysSuccess/>"), lambda inner: st.lists(inner, min_size=1, max_size=4).map(lambda parts: f"<Sequence>{''.join(parts)}</Sequence>")))
+BODIES = st.recursive(
+    st.just("<AlwaysSuccess/>"), lambda inner: st.lists(inner, min_size=1, max_size=4).map(lambda parts: f"<Sequence>{''.join(parts)}</Sequence>")
+)
+
+
+@given(BODIES)
 def test_boxes_of_a_drawing_never_overlap_and_children_stand_to_the_right(body: str) -> None:
     mission = load_mission(f'<root BTCPP_format="4"><BehaviorTree ID="T">{body}</BehaviorTree></root>')
     columns: list[float] = []

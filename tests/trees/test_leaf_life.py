@@ -100,7 +100,11 @@ class Broken(BehaviourWithPorts, tag="Broken"):
 
 @pytest.mark.parametrize(
     ("how", "reason"),
-    [("raise", "RuntimeError: no more"), ("none", "update() returned None, which is no status"), ("word", "update() returned 'SUCCESS', which is no status")],
+    [
+        ("raise", "RuntimeError: no more"),
+        ("none", "update() returned None, which is no status"),
+        ("word", "update() returned 'SUCCESS', which is no status"),
+    ],
 )
 def test_a_broken_leaf_halts_the_tree_and_is_named(pages: list[str], how: str, reason: str) -> None:
     mission = mission_of(f'<Parallel>\n<DiaryLeaf answers="RR"/><Sequence><Broken name="b" how="{how}"/></Sequence></Parallel>', Diary, Broken)
@@ -240,7 +244,8 @@ def test_node_states_tell_since_when() -> None:
     clock.advance(0.2)
     mission.tick_once()
     assert mission.node_states() == first
-    assert [(state.path, state.depth, state.status, state.since_s) for state in first] == [("s", 1, "RUNNING", 1.0), ("z", 2, "RUNNING", 1.0), ("a", 2, "IDLE", 0.0)]
+    facts = [(state.path, state.depth, state.status, state.since_s) for state in first]
+    assert facts == [("s", 1, "RUNNING", 1.0), ("z", 2, "RUNNING", 1.0), ("a", 2, "IDLE", 0.0)]
     assert mission.active_leaf() == "z"
 
 

@@ -62,7 +62,8 @@ def test_text(data_type: Any, text: str, value: Any) -> None:
 
 
 BAD_TEXTS = [
-    (int, "+5"), (int, " 5"), (int, ""), (int, "x"), (int, "99999999999"), (float, "nan"), (float, "1e999"), (float, ""), (bool, "yes"), (bool, " true"),
+    (int, "+5"), (int, " 5"), (int, ""), (int, "x"), (int, "99999999999"), (float, "nan"), (float, "1e999"), (float, ""), (bool, "yes"),
+    (bool, " true"),
     (list[int], "1;;2"), (list[int], "1; 2"), (list[int], "json:" + "[" * 100_000), (tuple[float, float], "1"), (tuple[float, float], "1;2;3"),
     (tuple[float, float], "1;2m"), (list[tuple[float, float]], "1;2"), (Colour, "BLUE"), (Literal["left", "right"], "up"), (Angle, "north-west"),
     (dict, "{}"), (int | float, "x"),
@@ -88,7 +89,8 @@ def test_cast(kind: Any, value: Any, cast: Any) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "value"), [(INT, 2.5), (INT, 2**31), (UINT, -1), (DOUBLE, 2**53 + 1), (BOOL, 2), (STRING, [1]), (INT, [1]), (INT, math.inf), (INT, math.nan)]
+    ("kind", "value"),
+    [(INT, 2.5), (INT, 2**31), (UINT, -1), (DOUBLE, 2**53 + 1), (BOOL, 2), (STRING, [1]), (INT, [1]), (INT, math.inf), (INT, math.nan)],
 )
 def test_a_value_that_does_not_fit(kind: Any, value: Any) -> None:
     with pytest.raises(PortProblem):
@@ -97,7 +99,8 @@ def test_a_value_that_does_not_fit(kind: Any, value: Any) -> None:
 
 @pytest.mark.parametrize(
     ("text", "value"),
-    [("7", 7), ("007", 7), ("-4", -4), ("1e3", 1000.0), ("2.50", 2.5), ("true", "true"), ("1;2", "1;2"), ("", ""), (" 1", " 1"), ("inf", "inf"), ("5000000000", 5_000_000_000)],
+    [("7", 7), ("007", 7), ("-4", -4), ("1e3", 1000.0), ("2.50", 2.5), ("true", "true"), ("1;2", "1;2"), ("", ""), (" 1", " 1"), ("inf", "inf"),
+     ("5000000000", 5_000_000_000)],
 )  # fmt: skip
 def test_literals_on_subtree_tags(text: str, value: Any) -> None:
     found = literal_value(text)
