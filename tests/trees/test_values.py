@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pluto_bt.behaviours.ports import text_of
-from pluto_bt.trees.values import BOOL, DOUBLE, INT, STRING, UINT, PortProblem, kind_of_type, literal_value
+from pluto_bt.trees.python_types import kind_of_type
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, STRING, UINT, PortProblem, literal_value
 
 
 class Colour(Enum):
