@@ -6,16 +6,18 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
+from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wall_ns
 from pluto_bt.system import Options, System
+from pluto_bt.trees import Mission, MissionError, check_mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
-from pluto_bt.trees.mission import Mission
 
 
 class Runner:
@@ -38,6 +40,9 @@ class Runner:
             world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
             trace_path=Path(trace_path) if trace_path else None, on_event=on_event, on_progress=on_progress,
         )  # fmt: skip
+        System(replace(options, trace_path=None, on_event=lambda event: None), VirtualClock()).rehearse()
+        if isinstance(clock, MonotonicClock):
+            clock.restart()
         self.system = System(options, clock)
         self.result = RunResult(result="STOPPED")
 
@@ -94,6 +99,35 @@ class Runner:
         """The goals that the mission drove to, for the picture."""
         robot = self.system.robot
         return tuple(dict.fromkeys(robot.goals))
+
+
+def make_runner(
+    inputs: Inputs,
+    *,
+    realtime: bool = False,
+    speed: float = 1.0,
+    max_time_s: float | None = None,
+    trace_path: str | Path | None = None,
+    gateway: str | None = None,
+    nodes: Sequence[type] = (),
+    on_event: Callable[[Event], None] = lambda event: None,
+    on_progress: Callable[[System], None] = lambda system: None,
+) -> Runner:
+    """Check and load the mission, then make the robot around it.
+
+    Raises: MissionError with all faults, also those that BehaviorTree.CPP finds only while ticking; nothing heavy was imported by then.
+    """
+    clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
+    topics = TopicGlobals()
+    common: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "topics": topics, "plugins": inputs.plugins, "file": str(inputs.mission_path)}
+    faults = check_mission(inputs.mission_path, nodes, **common)
+    if any(fault.severity == "error" for fault in faults):
+        raise MissionError(faults)
+    mission = load_mission(inputs.mission_path, nodes, clock, **common)
+    runner = Runner(inputs, mission, clock, max_time_s=max_time_s, trace_path=trace_path, on_event=on_event, on_progress=on_progress)
+    topics.view = lambda: runner.system.robot.snapshot
+    mission.attach(runner.system.robot)
+    return runner
 
 
 def _contact(contact: Any, kind: str) -> dict[str, Any]:

@@ -9,9 +9,11 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample
+from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState, Event
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
@@ -22,7 +24,8 @@ from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
-from pluto_bt.runtime.watchdog import Hung, Watchdog
+from pluto_bt.runtime.watchdog import Hung, Watchdog, innermost
+from pluto_bt.source import PlutoError
 from pluto_bt.trees.mission import Mission
 
 # fmt: off
@@ -234,7 +237,7 @@ class System:
     def _on_software_fault(self, fault: FaultAction, begins: bool) -> None:
         kind, _, name = fault.device.partition(":")
         if kind == "leaf":
-            self.robot.leaf_faults[name] = fault.kind if begins else ""
+            self._leaf_fault(name, fault.kind if begins else "")
             return
         part = self._parts.get(name)
         if part is None:
@@ -246,11 +249,26 @@ class System:
         else:
             part.fault = fault.kind if begins else ""
             if begins and fault.kind == "hang":
-                self._hung(part)
+                self._hung(part, None)
 
-    def _hung(self, part: Part) -> None:
+    def _leaf_fault(self, name: str, kind: str) -> None:
+        """A leaf raises, gives no status or never returns, as the world script says; "" = its own work again."""
+
+        def step() -> Any:
+            if kind == "hang":
+                if isinstance(self.scheduler, Threads):
+                    wait(threading.Event(), 1e6)
+                raise Hung(f'the world script lets leaf "{name}" hang')  # in virtual time nobody need wait for the watchdog
+            raise PlutoError(f'the world script lets leaf "{name}" {"raise" if kind == "raise" else "return None"}')
+
         active = self.executive.core.active
-        leaf = active.mission.current_leaf() if part.module.name == "executive" and active is not None else ""
+        if active is None or not active.mission.replace_step(name, step if kind else None):
+            self.say("warning", "unknown-leaf", "world", f'the world script names no leaf of this mission: "{name}"')
+
+    def _hung(self, part: Part, frame: FrameType | None) -> None:
+        """`part` never returned: name it, or the leaf it is in, stop the robot and end the run."""
+        active = self.executive.core.active
+        leaf = active.mission.node_in(frame) or active.mission.active_leaf() if part.module.name == "executive" and active is not None else ""
         what = f'leaf "{leaf}" never returned' if leaf else f'module "{part.module.name}" never returned'
         part.fault = "hang"
         self._end("STOPPED", "hung", what)
@@ -263,13 +281,23 @@ class System:
 
     # ------------------------------------------------------------------ running
 
-    def run(self, mission: Mission) -> None:
-        """Run `mission` to its end, then bring the robot to rest. The outcome is in `ended` and in the executive."""
-        self.executive.core.start(mission)
+    def rehearse(self) -> None:
+        """Drive half a second, so that every kernel is compiled before a watchdog looks. For a system in lockstep that is then thrown away."""
+        assert isinstance(self.scheduler, Lockstep)
+        self._start()
+        self.inboxes["motion"].post("mission", ActuatorState(0.0, 10 * Avoidance.BOTH + CommandType.GOTO, (1e3, 0.0), (0.3, 0.5)))
+        self.scheduler.run_until(NS // 2)
+
+    def _start(self) -> None:
         now_ns = self.clock.now_ns()
         for row in in_start_order([part.module for part in self._parts.values()]):
             self._parts[row.name].start(now_ns)
         self.scheduler.start()
+
+    def run(self, mission: Mission) -> None:
+        """Run `mission` to its end, then bring the robot to rest. The outcome is in `ended` and in the executive."""
+        self.executive.core.start(mission)
+        self._start()
         try:
             self._until(self._is_over)
             self._settle()
@@ -294,10 +322,10 @@ class System:
                 while not is_over():
                     scheduler.run_until(self.clock.now_ns() + NS // 2, lambda: not is_over())
                     self.options.on_progress(self)
-        except Hung:
+        except Hung as hung:
             if scheduler.current is None:
                 raise
-            self._hung(scheduler.current)
+            self._hung(scheduler.current, innermost(hung))
 
     def _threads_until(self, scheduler: Threads, is_over: Callable[[], bool]) -> None:
         while not is_over():
@@ -305,7 +333,7 @@ class System:
             self.options.on_progress(self)
             stuck = scheduler.stuck_part(THREADS_LIMIT_S)
             if stuck is not None and stuck.fault != "hang":
-                self._hung(stuck)
+                self._hung(stuck, scheduler.frame_of(stuck))
 
     def _is_over(self) -> bool:
         mission = self.executive.core.mission

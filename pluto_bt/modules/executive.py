@@ -13,7 +13,7 @@ from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees import Mission
 
 SHOW_MODULES_EVERY = 10
 
@@ -87,7 +87,7 @@ class Executive:
 
 def node_states(mission: Mission) -> list[NodeState]:
     """The nodes of a mission as the blackboard shows them."""
-    return [NodeState(node.path, node.kind, node.name, node.depth, node.status, node.feedback, node.since_s) for node in mission.node_states()]
+    return [NodeState(node.path, node.type, node.name, node.depth, node.status, node.feedback, node.since_s) for node in mission.node_states()]
 
 
 def module_state(part: Part) -> ModuleState:

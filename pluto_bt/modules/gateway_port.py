@@ -11,8 +11,7 @@ from pluto_bt.gateway.port import Newest, Refused, RunState
 from pluto_bt.modules.executive import module_state
 from pluto_bt.system import System
 from pluto_bt.trees.executive import PAUSED, RUNNING, Activity
-from pluto_bt.trees.mission import Mission
-from pluto_bt.trees.errors import MissionError
+from pluto_bt.trees import Mission, MissionError
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}

@@ -7,7 +7,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pluto_bt.maps.platform import Platform
+from pluto_bt.maps.polygons import crossing, is_flat
 from pluto_bt.modules.dmu import DmuParameters
 from pluto_bt.modules.local import LocalParameters
 from pluto_bt.modules.marker import MarkerParameters
@@ -76,16 +79,12 @@ def _text_of(name: str, faults: Faults) -> str | None:
 
 def _check_body(robot: RobotFile, place: Place, faults: Faults) -> None:
     """What single values cannot tell: the outline is a polygon round the origin; an ackermann robot knows its turning radius."""
-    from pluto_bt.maps.polygons import area_of, is_simple
-
-    import numpy as np
-
     outline = np.array(robot.body.outline_m)
     if not np.all(np.isfinite(outline)):
         faults.error(place, "bad-value", "body.outline_m has numbers that are not finite")
-    elif not is_simple(outline):
+    elif crossing(outline) is not None:
         faults.error(place, "self-crossing", "body.outline_m crosses itself", mend="list the corners in order round the robot")
-    elif abs(area_of(outline)) < 1e-4:
+    elif is_flat(outline):
         faults.error(place, "no-area", "body.outline_m encloses no area")
     if robot.body.kinematics == "ackermann" and robot.body.min_turn_radius_m <= 0:
         faults.error(place, "missing-parameter", "an ackermann body needs min_turn_radius_m > 0")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from pluto_bt.behaviours.robot import Ticket
+from pluto_bt.blackboard import Snapshot
+from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
 
 SOURCE = "mission"
+GOALS_KEPT = 200
 MOTION_COMMAND, MOTION_STATUS = "motion/command", "motion/status"
 
 
@@ -18,6 +21,12 @@ class RobotLink:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._snapshot = context.board.snapshot(context.clock.now_s())
+        self.goals: list[Pair] = []  # where missions sent the robot, for pictures
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The moment that this tick sees."""
+        return self._snapshot
 
     @property
     def platform(self) -> Platform:
@@ -36,6 +45,8 @@ class RobotLink:
     def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
         """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
         command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), (force,))
+        if flags % 10 == CommandType.GOTO and flags > 0 and len(self.goals) < GOALS_KEPT and position not in self.goals:
+            self.goals.append(position)
         return Ticket(command, self._context.inboxes["motion"].post(SOURCE, command))
 
     def status(self, ticket: Ticket) -> FVectorState | None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from types import FrameType
 from typing import Any
 
+from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.board_view import BoardView
 from pluto_bt.trees.controls import ReactiveSequence, Sequence, TryCatch
 from pluto_bt.trees.decorators import ForceFailure, Inverter
@@ -31,6 +33,7 @@ class Mission:
         self.blackboard = BoardView(board.root)
         self.ticks = 0
         self._tracked, self._context = tracked, context
+        self._own_steps: dict[int, Callable[[], Result]] = {}
         self._make_paths_unique()
 
     # -- ticking
@@ -140,6 +143,45 @@ class Mission:
             return ""
         outputs: dict[str, Any] = getattr(decider.node, "last_outputs", {})
         return str(outputs.get("reason") or decider.node.feedback_message or decider.plan.name)
+
+    def deciding_text(self) -> str:
+        """The sentence of the deciding leaf: its name and its feedback; "" if the root did not fail."""
+        decider = self.deciding_node()
+        return "" if decider is None else f"{decider.path}: {decider.node.feedback_message}".rstrip(": ")
+
+    def status_line(self) -> str:
+        """One letter a node, depth first: I, R, S, F, K (skipped). Cheap; equal lines mean that no status changed."""
+        skipped = self._skipped()
+        return "".join([tracked.letter(skipped) for tracked in self._tracked])
+
+    def outputs(self) -> dict[str, str]:
+        """What the root's output ports gave, as text: for a mission that is a single leaf."""
+        return {name: text_of(value) for name, value in getattr(self.root, "last_outputs", {}).items()}
+
+    def attach(self, robot: Any) -> None:
+        """Join a robot that was not there yet when the mission was loaded."""
+        self.blackboard.robot = robot
+
+    def node_in(self, frame: FrameType | None) -> str:
+        """The path of the node at work in a stack of frames (innermost first to be looked at), "" if there is none."""
+        paths = {id(tracked.node): tracked.path for tracked in self._tracked}
+        while frame is not None:
+            for value in (frame.f_locals.get("self"), frame.f_locals.get("leaf")):
+                if id(value) in paths:
+                    return paths[id(value)]
+            frame = frame.f_back
+        return ""
+
+    def replace_step(self, name: str, step: Callable[[], Result] | None) -> bool:
+        """Let `step` stand in for that of all leaves called `name` (by name, type or path), None = their own again. False if there is none.
+
+        World scripts let leaves fail with it.
+        """
+        found = [one for one in self._tracked if not one.node.children and name in (one.plan.name, one.plan.type_name, one.path)]
+        for tracked in found:
+            own = self._own_steps.setdefault(id(tracked.node), tracked.node.step)
+            tracked.node.step = own if step is None else step
+        return bool(found)
 
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""

@@ -8,6 +8,8 @@ from typing import Any
 from pluto_bt.trees.engine.status import IDLE, NAME_OF_STATUS, SKIPPED, Result
 from pluto_bt.trees.loader.expand import Plan
 
+LETTERS = {status: "K" if name == "SKIPPED" else name[0] for status, name in NAME_OF_STATUS.items()}
+
 
 @dataclass(frozen=True, slots=True)
 class NodeState:
@@ -36,6 +38,11 @@ class Tracked:
         """The status now; SKIPPED for those that were skipped in the last tick."""
         result: Result = SKIPPED if id(self.node) in skipped else self.node.status
         return NAME_OF_STATUS[result]
+
+    def letter(self, skipped: set[int]) -> str:
+        """The status now as one letter."""
+        node = self.node
+        return "K" if id(node) in skipped else LETTERS[node.status]
 
     def last(self, skipped: set[int]) -> str:
         """What the node told its parent last; IDLE if it was never ticked."""

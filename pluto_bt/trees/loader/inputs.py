@@ -11,6 +11,8 @@ from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.scopes import EMPTY, Scope
 from pluto_bt.trees.values import PortProblem, literal_value
 
+REALS = ("double", "float")
+
 
 def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mapping[str, str] | None, report: Report) -> None:
     """Write the given inputs and the defaults of the others into the root scope; each counts as a write.
@@ -20,22 +22,25 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
     model = files.subtree_models.get(main.tree_id)
     for name, text in (given or {}).items():
         _check_name(name, model, main, report)
-        _write(root, name, text, report)
+        port = model.ports.get(name) if model is not None else None
+        _write(root, name, text, port.type_name if port is not None else "", report)
     for port in model.ports.values() if model is not None else ():
         entry = root.find(port.name)
         if (entry is not None and entry.value is not EMPTY) or port.direction == "out":
             continue
         if port.default is not None:
-            _write(root, port.name, port.default, report)
+            _write(root, port.name, port.default, port.type_name, report)
         elif given is not None:
             what = f'input "{port.name}" of {main.tree_id!r} is not given'
             mend = f"add --port {port.name}=VALUE"
             report.error(port.element.place, "missing-input", what, expected=port.description or port.type_name or "a value", found="nothing", mend=mend)
 
 
-def _write(root: Scope, name: str, text: str, report: Report) -> None:
+def _write(root: Scope, name: str, text: str, type_name: str, report: Report) -> None:
+    """Typed as a SubTree's literal is, but that digits for an input declared as a real number are one."""
     try:
-        root.write(name, literal_value(text))
+        value = literal_value(text)
+        root.write(name, float(value) if type_name in REALS and isinstance(value, int) else value)
     except PortProblem as problem:
         report.error(Place(f"--port {name}"), "bad-input", str(problem), found=text)
 

@@ -10,6 +10,7 @@ from typing import Any, Final
 
 from py_trees.ports import get_ports_registry
 
+import pluto_bt.behaviours.catalogue  # noqa: F401  # the library's own leaves enter py_trees' registry by being imported
 from pluto_bt.trees.controls import CONTROLS
 from pluto_bt.trees.decorators import DECORATORS
 from pluto_bt.trees.engine.node import DecoratorNode, Node

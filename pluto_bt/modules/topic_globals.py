@@ -1,0 +1,72 @@
+"""Topics as a mission sees them: `{@Localization/Pose}` is the message, and `@Localization_Pose_x` one number of it, for scripts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any, get_args, get_origin
+
+import msgspec
+
+from pluto_bt.blackboard import TOPICS, Snapshot, Topic
+from pluto_bt.blackboard.messages import LaserPose, Message, Pose
+
+POSE_NAMES = ("x", "y", "z", "theta", "phi", "psi", "pan", "tilt")
+SCALARS = (int, float, bool, str)
+Getter = Callable[[Any], Any]
+
+
+def fields_of(kind: type[Message]) -> dict[str, Getter]:
+    """The numbers and words of a message by name; a tuple's items carry their place, those of a pose their letter."""
+    found: dict[str, Getter] = {}
+    for field in msgspec.structs.fields(kind):
+        name, declared = field.name, field.type
+        if declared in SCALARS:
+            found[name] = lambda value, name=name: getattr(value, name)
+        elif get_origin(declared) is tuple and get_args(declared)[0] in SCALARS:
+            is_pose = name == "pose" and kind in (Pose, LaserPose)
+            for i, word in enumerate(_item_names(declared, is_pose)):
+                full = word if is_pose else f"{name}_{word}"
+                found[full] = lambda value, name=name, i=i: getattr(value, name)[i]
+    return found
+
+
+def _item_names(declared: Any, is_pose: bool) -> Iterable[str]:
+    arguments = get_args(declared)
+    count = 4 if arguments[-1] is Ellipsis else len(arguments)  # the chain's vectors have at most four elements
+    return POSE_NAMES[:count] if is_pose else [str(i) for i in range(count)]
+
+
+class TopicGlobals:
+    """Implements `pluto_bt.trees.scopes.Topics` over the snapshot of the tick."""
+
+    def __init__(self, view: Callable[[], Snapshot | None] = lambda: None, topics: Iterable[Topic] = TOPICS) -> None:
+        self.view = view
+        self._getters: dict[str, tuple[str, Getter]] = {}
+        for topic in topics:
+            self._getters[topic.name] = (topic.name, lambda value: value)
+            for field, getter in fields_of(topic.type).items():
+                self._getters[f"{topic.name.replace('/', '_').replace('-', '_')}_{field}"] = (topic.name, getter)
+
+    def names(self) -> Iterable[str]:
+        """All names that can be read, without the `@`."""
+        return self._getters
+
+    def seq(self, name: str) -> int:
+        """How often the topic has been written."""
+        view = self.view()
+        sample = None if view is None else view.newest(self._getters[name][0])
+        return 0 if sample is None else sample.seq
+
+    def get(self, name: str) -> Any:
+        """The newest value. Raises KeyError for an unknown name or a topic that nobody has written."""
+        topic, getter = self._getters[name]
+        view = self.view()
+        sample = None if view is None else view.newest(topic)
+        if sample is None:
+            raise KeyError(name)
+        try:
+            return getter(sample.value)
+        except IndexError:
+            raise KeyError(name) from None
+
+
