@@ -21,7 +21,7 @@ demo: $(STAMP)   ## set everything up and run a mission in a world, with summary
 	$(BIN)/pluto run patrol.xml --world yard.xml --port goals="$(GOALS)" --plot out/demo.png
 	@echo "the picture is out/demo.png"
 
-GOALS ?= 3,0;6,2
+GOALS ?= 8,3;13.5,3;10.5,8;2,3.5
 
 test: $(STAMP)   ## set everything up and run all tests
 	$(BIN)/python -m pytest -n 2 -q

@@ -19,7 +19,7 @@ FIRST_STEPS = """\
 pluto runs missions (behaviour trees in XML) on simulated and real robots. Three things to try:
 
   pluto run t01_first_steps.xml                            a first mission in the yard, with a summary
-  pluto run patrol.xml --port goals="3,0;6,2" --plot out.png   a patrol, drawn
+  pluto run patrol.xml --port goals="8,3;13.5,3;2,3.5" --plot out.png   a patrol, drawn
   pluto tree patrol.xml --format unicode                   what that mission is made of
 
 `pluto --help` lists all commands."""

@@ -109,5 +109,3 @@ class Body:
         if self.servo:
             self._state[motion.SPEED_SETPOINT] = self._state[motion.WHEEL_SPEED] = 0.0
         self._read()
-
-

@@ -25,7 +25,7 @@ class Noise:
 
     def __init__(self, seed: int, name: str) -> None:
         key = zlib.crc32(name.encode())
-        streams = [np.random.Generator(np.random.PCG64(np.random.SeedSequence(abs(seed), spawn_key=(key, i)))) for i in range(4)]
+        streams = [np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed % 2**64, spawn_key=(key, i)))) for i in range(4)]
         self._block_normals, self._block_uniforms, self._array_normals, self._array_uniforms = streams
         self._normals: Iterator[float] = iter(())
         self._uniforms: Iterator[float] = iter(())

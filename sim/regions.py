@@ -18,7 +18,9 @@ class Regions:
         self._n = len(polygons)
         starts = [np.asarray(polygon, dtype=np.float64) for polygon in polygons]
         self._start = np.vstack(starts) if starts else np.zeros((0, 2))
-        self._edge = (np.vstack([np.roll(points, -1, axis=0) for points in starts]) if starts else np.zeros((0, 2))) - self._start
+        ends = np.vstack([np.roll(points, -1, axis=0) for points in starts]) if starts else np.zeros((0, 2))
+        self._end_y = ends[:, 1]
+        self._edge = ends - self._start
         self._owner = np.repeat(np.arange(self._n), [len(points) for points in starts])
         self._length2 = np.maximum((self._edge**2).sum(axis=1), 1e-300)
         self._inside: tuple[int, ...] = ()
@@ -31,16 +33,21 @@ class Regions:
         return self._inside
 
     def edge_distance_m(self, x_m: float, y_m: float) -> float:
-        """A lower bound of the distance from the point to the nearest edge of any polygon (exact where it was looked up)."""
-        self.at(x_m, y_m)
-        return self._margin_m - math.hypot(x_m - self._x, y_m - self._y)
+        """A lower bound of the distance from the point to the nearest edge of any polygon; not less than a third of it."""
+        if not self._n:
+            return math.inf
+        moved_m = math.hypot(x_m - self._x, y_m - self._y)
+        if moved_m >= 0.5 * self._margin_m:
+            self._look(x_m, y_m)
+            return self._margin_m
+        return self._margin_m - moved_m
 
     def _look(self, x_m: float, y_m: float) -> None:
         """Even-odd rule and distances to all edges."""
         to_point = np.array([x_m, y_m]) - self._start
         share = np.clip((to_point * self._edge).sum(axis=1) / self._length2, 0.0, 1.0)
         gap = to_point - share[:, None] * self._edge
-        above, end_above = to_point[:, 1] < 0.0, to_point[:, 1] < self._edge[:, 1]
+        above, end_above = self._start[:, 1] > y_m, self._end_y > y_m  # absolute: both edges of a corner must judge it alike
         crosses = above != end_above
         left_of = np.where(crosses, to_point[:, 0] * self._edge[:, 1] < to_point[:, 1] * self._edge[:, 0], False)
         hits = crosses & (left_of == (self._edge[:, 1] > 0.0))

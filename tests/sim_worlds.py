@@ -13,7 +13,23 @@ from numpy.typing import NDArray
 
 import pluto_bt.platforms
 from drivers.records import Record
-from pluto_bt.maps.platform import Body, Devices, Limits, Platform
+from pluto_bt.maps.platform import (
+    Body,
+    Bumpers,
+    Compass,
+    Devices,
+    Gps,
+    Inertial,
+    Laser,
+    Limits,
+    MarkerCamera,
+    Odometry,
+    Platform,
+    Sonar,
+    Transducer,
+    WheelSpeed,
+    Wrist,
+)
 from pluto_bt.maps.world import Action, At, Shape, World
 from sim import BaseDevice, Simulator
 
@@ -50,6 +66,24 @@ def cart(**devices: Any) -> Platform:
         motor_latency_s=0.0, motor_time_constant_s=0.0,
     )  # fmt: skip
     return Platform(name="cart", body=body, limits=limits, devices=Devices(**devices))
+
+
+def everything() -> Platform:
+    """A quick robot with every device there is, without noise."""
+    devices: dict[str, Any] = {
+        "laser": Laser(x_m=0.3, beams=19, arrival_delay_s=0.0, resolution_m=0.0),
+        "sonar": Sonar(transducers=(Transducer(x_m=0.4, y_m=0.0, theta_deg=0.0),)),
+        "bumpers": Bumpers(), "dmu": Inertial(), "imu": Inertial(absolute=True), "compass": Compass(), "gps": Gps(rate_hz=10.0),
+        "wrist": Wrist(), "marker": MarkerCamera(delay_s=0.0, rate_hz=10.0), "speed": WheelSpeed(), "odometry": Odometry(),
+    }  # fmt: skip
+    assert {*devices, "battery", "steering"} == set(Devices.__struct_fields__)
+    return cart(**devices)
+
+
+def plain(record: Record) -> tuple[Any, ...]:
+    """A record to compare to the bit; NaN equals NaN."""
+    values = (getattr(record, field) for field in record.__struct_fields__)
+    return (type(record).__name__, *(value.tobytes() if isinstance(value, np.ndarray) else repr(value) for value in values))
 
 
 def run(sim: Simulator, seconds: float, speed_mps: float = 0.0, turn_rate_radps: float = 0.0, each: Callable[[], None] | None = None) -> Simulator:

@@ -47,6 +47,23 @@ def test_rays_from_cell_borders_along_axes_and_diagonals(seed, x2, y2):
     must_equal_the_walk(occupied, x2 / 2, y2 / 2, np.arange(-8, 9) * math.pi / 8)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_rays_that_begin_on_the_outer_border(seed):
+    rng = np.random.default_rng(seed)
+    occupied = random_grid(rng, 0.3)
+    rows, columns = occupied.shape
+    along_x, along_y = rng.integers(0, 2 * columns + 1) / 2, rng.integers(0, 2 * rows + 1) / 2
+    for x, y in ((0.0, along_y), (columns, along_y), (along_x, 0.0), (along_x, rows)):
+        must_equal_the_walk(occupied, float(x), float(y), np.arange(-8, 9) * math.pi / 8)
+
+
+def test_a_ray_that_leaves_the_grid_through_a_corner_still_touches_the_cell_beside_it():
+    occupied = np.zeros((4, 4), dtype=np.uint8)
+    occupied[1, 0] = 1
+    must_equal_the_walk(occupied, 0.0, 2.0, np.array([-2.0, -2.5, -3.0, 3.0]))
+    must_equal_the_walk(occupied, 1.0, 3.0, np.array([-3 * math.pi / 4]))
+
+
 @pytest.mark.parametrize(("dx", "dy", "expected"), [(1.0, 0.0, 2.5), (-1.0, 0.0, 2.5), (0.0, 1.0, 2.5), (0.0, -1.0, 2.5), (-0.0, 1.0, 2.5)])
 def test_exactly_axis_parallel_rays_end_at_the_border_of_the_cell(dx, dy, expected):
     occupied = np.zeros((7, 7), dtype=np.uint8)

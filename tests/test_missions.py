@@ -16,13 +16,6 @@ def test_the_car_closes_the_loops_of_trip2_without_touching_anything(scenario: A
     assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.2
 
 
-def test_the_car_stands_still_until_its_gyro_is_known(scenario: Any) -> None:
-    run = scenario("corridor.xml", mission="trip2.xml", platform="car", start="0.5,12,90", seed=3, ports={"max_loops": 1})
-    assert run.at(19.9).pose == pytest.approx(run.at(0.0).pose)
-    assert run.at(25.0).distance_to(0.5, 12.0) > 1.0
-    assert run.said("gyro-bias-known")
-
-
 def test_a_patrol_reaches_its_goals_in_truth(scenario: Any) -> None:
     goals = [(8.0, 3.0), (13.5, 3.0), (8.0, 6.5)]
     run = scenario("yard.xml", mission="patrol.xml", seed=5, ports={"goals": ";".join(f"{x},{y}" for x, y in goals)})

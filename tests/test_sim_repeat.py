@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import msgspec
-import numpy as np
 import pytest
-from sim_worlds import at, box, points, room, run, shipped
+from sim_worlds import at, box, plain, points, room, run, shipped
 
 from drivers.records import Record
 from pluto_bt.maps.platform import Platform
@@ -33,12 +32,6 @@ def everything_read(platform: Platform, seed: int) -> dict[str, list[Any]]:
 
     run(sim, 3.0, 0.5, 0.4, each=read)
     return {name: [plain(record) for record in found] for name, found in records.items()} | {"truth": [sim.pose, sim.min_clearance_m]}
-
-
-def plain(record: Record) -> tuple[Any, ...]:
-    """Comparable to the bit; NaN equals NaN."""
-    values = (getattr(record, field) for field in record.__struct_fields__)
-    return (type(record).__name__, *(value.tobytes() if isinstance(value, np.ndarray) else repr(value) for value in values))
 
 
 @pytest.mark.parametrize("name", ["atrv2", "car", "jbot", "pioneer"])

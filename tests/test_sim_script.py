@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sim_worlds import at, box, cart, of_type, points, room, run, shipped
+from sim_worlds import at, box, cart, everything, of_type, points, room, run, shipped
 
 from drivers.records import (
     BumperRecord,
@@ -23,25 +23,10 @@ from drivers.records import (
     SpeedRecord,
     WristRecord,
 )
-from pluto_bt.maps.platform import Devices, Platform
 from pluto_bt.maps.world import Area, FaultAction, Marker, Put, Remove, SetTopic, Terrain, When, World
 from sim import Simulator, WristDevice
 
 SQUARE = points((1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0))
-
-
-def everything() -> Platform:
-    """A quick robot with every device there is, without noise."""
-    from pluto_bt.maps.platform import Bumpers, Compass, Gps, Inertial, Laser, MarkerCamera, Odometry, Sonar, Transducer, WheelSpeed, Wrist
-
-    devices: dict[str, Any] = {
-        "laser": Laser(x_m=0.3, beams=19, arrival_delay_s=0.0, resolution_m=0.0),
-        "sonar": Sonar(transducers=(Transducer(x_m=0.4, y_m=0.0, theta_deg=0.0),)),
-        "bumpers": Bumpers(), "dmu": Inertial(), "imu": Inertial(absolute=True), "compass": Compass(), "gps": Gps(rate_hz=10.0),
-        "wrist": Wrist(), "marker": MarkerCamera(delay_s=0.0, rate_hz=10.0), "speed": WheelSpeed(), "odometry": Odometry(),
-    }  # fmt: skip
-    assert {*devices, "battery", "steering"} == set(Devices.__struct_fields__)
-    return cart(**devices)
 
 
 def with_fault(fault: FaultAction, start_s: float = 1.0) -> Simulator:

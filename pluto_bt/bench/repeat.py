@@ -15,7 +15,7 @@ def trace_of(seed: int) -> str:
     from pluto_bt.commands.inputs import Request, read_inputs
     from pluto_bt.runner import make_runner
 
-    request = Request("patrol.xml", world="yard.xml", port=["goals=3,0;0,0"], seed=str(seed))
+    request = Request("patrol.xml", world="yard.xml", port=["goals=8,3"], seed=str(seed))
     return make_runner(read_inputs(request), max_time_s=20.0).run().trace_sha256
 
 

@@ -7,7 +7,7 @@ from pluto_bt.bench.row import BenchRow
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
 
-REQUEST = Request("patrol.xml", world="yard.xml", port=["goals=3,0;6,2;3,3;0,0", "rounds=20"])
+REQUEST = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=20"])
 
 
 def measured_run(max_time_s: float) -> Runner:

@@ -42,11 +42,12 @@ GRID_OWNER = 0.0  # row of the static map among the owners
 
 @kernel
 def nearest_solid(
-    outline: Table, segments: Table, blocks: Table, rings: Table, discs: Table, free: NDArray[np.uint8], frame: Table, found: Table
+    outline: Table, segments: Table, blocks: Table, rings: Table, discs: Table, free: NDArray[np.uint8], frame: Table, cells: Table, found: Table
 ) -> int:
     """The nearest solid thing into `found[0]`; returns how many there are, 0 or 1, or -1 for an outline that is not finite.
 
-    A circle around the outline gives a bound that leaves the exact test to the few things that may be nearest.
+    `cells` is as large as the outline and is written over. A circle around the outline gives a bound that leaves the exact test to the few
+    things that may be nearest.
     """
     found[0, GAP] = math.inf
     cx, cy, radius = outline_circle(outline)
@@ -69,25 +70,25 @@ def nearest_solid(
         if found[0, GAP] > 0.0 and rings[k, RING_HEIGHT] >= 0.0 and ring_holds(segments, rings, k, outline[0, 0], outline[0, 1]):
             keep_nearest(found, 0.0, cx, cy, rings[k, RING_OWNER])
     if free.size and found[0, GAP] > 0.0:
-        gap, x, y = map_gap(outline, free, frame, found[0, GAP])
+        gap, x, y = map_gap(outline, cells, free, frame, found[0, GAP])
         keep_nearest(found, gap, x, y, GRID_OWNER)
     return 1 if math.isfinite(found[0, GAP]) else 0
 
 
 @kernel
 def touching_solids(
-    outline: Table, segments: Table, blocks: Table, rings: Table, discs: Table, free: NDArray[np.uint8], frame: Table, found: Table
+    outline: Table, segments: Table, blocks: Table, rings: Table, discs: Table, free: NDArray[np.uint8], frame: Table, cells: Table, found: Table
 ) -> int:
     """All owners that share a point with the outline, one row of `found` each; returns how many, -1 for an outline that is not finite.
 
-    `found` has a row for every owner.
+    `found` has a row for every owner; `cells` is as large as the outline and is written over.
     """
     count = 0
     cx, cy, radius = outline_circle(outline)
     if not math.isfinite(cx + cy + radius):
         return -1
     if free.size:
-        gap, x, y = map_gap(outline, free, frame, 1e-9)
+        gap, x, y = map_gap(outline, cells, free, frame, 1e-9)
         count = note_contact(found, count, gap, x, y, GRID_OWNER)
     for b in range(blocks.shape[0]):
         if box_beyond(blocks, b, cx, cy, radius):
@@ -122,10 +123,9 @@ def hole_under(outline: Table, segments: Table, rings: Table) -> int:
 
 
 @kernel
-def map_gap(outline: Table, free: NDArray[np.uint8], frame: Table, limit: float) -> tuple[float, float, float]:
-    """`grid_gap` in metres and the map frame."""
+def map_gap(outline: Table, cells: Table, free: NDArray[np.uint8], frame: Table, limit: float) -> tuple[float, float, float]:
+    """`grid_gap` in metres and the map frame. `cells`: room for the outline in cells."""
     unit, cos, sin = frame[GRID_RESOLUTION], frame[GRID_COS], frame[GRID_SIN]
-    cells = np.zeros_like(outline)
     for i in range(outline.shape[0]):
         east, north = (outline[i, 0] - frame[GRID_X]) / unit, (outline[i, 1] - frame[GRID_Y]) / unit
         cells[i, 0], cells[i, 1] = east * cos + north * sin, north * cos - east * sin

@@ -48,15 +48,11 @@ def aim_fan(fan: Table, n_beams: int, tilt_rad: float) -> None:
     cos, sin = math.cos(tilt_rad), math.sin(tilt_rad)
     for i in range(n_beams):
         forward, left = fan[COS, i] * cos, fan[SIN, i]
-        stretch = max(math.sqrt(forward * forward + left * left), VERTICAL)
+        stretch = 1.0 if tilt_rad == 0.0 else max(math.sqrt(forward * forward + left * left), VERTICAL)
         fan[STRETCH, i] = stretch
         fan[DIRECTION_X, i] = forward / stretch
         fan[DIRECTION_Y, i] = left / stretch
         fan[SLOPE, i] = -fan[COS, i] * sin / stretch
-    if tilt_rad == 0.0:
-        fan[STRETCH] = 1.0
-        fan[DIRECTION_X] = fan[COS]
-        fan[DIRECTION_Y] = fan[SIN]
     fan[HEAD, TILT_RAD] = tilt_rad
     fan[HEAD, COS_TILT] = cos
 

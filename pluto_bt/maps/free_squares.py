@@ -53,5 +53,9 @@ def fill_free_squares(occupied: NDArray[np.uint8], squares: NDArray[np.uint8]) -
                 squares[way, iy, ix] = side + 1
     for iy in range(1, rows - 1):
         for ix in range(1, columns - 1):
-            if np.all(occupied[iy - 1 : iy + 2, ix - 1 : ix + 2]):
-                squares[:, iy, ix] = INSIDE
+            solid = 0
+            for neighbour in range(9):
+                solid += occupied[iy - 1 + neighbour // 3, ix - 1 + neighbour % 3] != 0
+            if solid == 9:
+                for way in range(4):
+                    squares[way, iy, ix] = INSIDE

@@ -15,6 +15,7 @@ from pluto_bt.source import Faults, Place
 
 MAX_PIXELS = 64_000_000  # 400 m square at 0.05 m
 MAX_COLOUR_PIXELS = 16_000_000
+_NO_DIGIT = re.compile(rb"[^0-9\s]\S*+|[0-9]{10,}+")
 _PGM_HEAD = re.compile(rb"(P[25])(?:\s++|#[^\n]*+\n)++(\d{1,6})(?:\s++|#[^\n]*+\n)++(\d{1,6})(?:\s++|#[^\n]*+\n)++(\d{1,6})(?:\s|#[^\n]*+\n)")
 
 
@@ -77,9 +78,12 @@ def _pgm_pixels(
     values: NDArray[Any]
     if is_text:
         words = re.sub(rb"#[^\n]*", b"", data[start:]) if b"#" in data[start:] else data[start:]
-        with warnings.catch_warnings():  # numpy stops at the first word that is no number, and says so by a warning
-            warnings.simplefilter("ignore", DeprecationWarning)
-            values = np.fromstring(words, dtype=np.int32, sep=" ")
+        strange = _NO_DIGIT.search(words)
+        if strange is not None:
+            what = f'image "{name}" has a pixel that is no whole number'
+            faults.error(place, "bad-image", what, expected=f"whole numbers from 0 to {white}", found=repr(strange.group())[2:-1])
+            return None
+        values = np.fromstring(words.decode("ascii"), dtype=np.int64, sep=" ") if words.strip() else np.zeros(0, np.int64)
         found = values.size
     else:
         found = len(data) - start
@@ -106,6 +110,10 @@ def _read_with_pillow(data: bytes, name: str, place: Place, faults: Faults) -> G
             if _is_too_large(*image.size, MAX_PIXELS if is_grey else MAX_COLOUR_PIXELS, name, place, faults):
                 return None
             return _grey(image)
+    except Image.DecompressionBombError:
+        expected = f"at most {MAX_PIXELS // 1_000_000} million pixels"
+        faults.error(place, "too-large", f'image "{name}" is too large', expected=expected, found="far more")
+        return None
     except Exception as error:  # a decoder fed with garbage raises OSError, SyntaxError, ValueError, zlib.error, struct.error, …
         what = "no image that can be read" if isinstance(error, UnidentifiedImageError) else f"broken: {error}"
         faults.error(place, "bad-image", f'image "{name}" is {what}', expected="a whole PGM, PNG or BMP image", found=repr(data[:12])[2:-1])

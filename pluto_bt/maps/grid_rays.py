@@ -51,7 +51,9 @@ def crossed(t_line: float, t: float, ties: bool) -> bool:
 
 @inline_kernel
 def grid_entry(rows: int, columns: int, x: float, y: float, dx: float, dy: float, per_x: float, per_y: float) -> tuple[float, int, int]:
-    """When, and into which cell, a ray that begins outside enters the grid; time `FAR` if it does not."""
+    """When, and in which cell, a ray comes into the grid: at 0 if it begins inside; time `FAR` if it never does."""
+    if 0.0 <= x < columns and 0.0 <= y < rows:
+        return 0.0, int(x), int(y)
     tx, ty = entry_time(x, columns, per_x), entry_time(y, rows, per_y)
     t = max(tx, ty)
     if t >= FAR or t < 0.0:
@@ -70,12 +72,12 @@ def grid_entry(rows: int, columns: int, x: float, y: float, dx: float, dy: float
 
 @inline_kernel
 def entry_time(at: float, size: int, per: float) -> float:
-    """When the ray is within [0, size) on one axis: at once, at its near end, or `FAR` = never."""
+    """When the ray comes into [0, size) on one axis: at its near end; `FAR` = never; -1 = it is inside already."""
     if at < 0.0:
         return -at * per if 0.0 < per < FAR else FAR
     if at >= size:
         return (size - at) * per if per < 0.0 else FAR
-    return 0.0
+    return -1.0
 
 
 @inline_kernel
@@ -91,20 +93,16 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
     rows, columns = free.shape[1], free.shape[2]
     per_x = 1.0 / dx if abs(dx) > NEVER else FAR
     per_y = 1.0 / dy if abs(dy) > NEVER else FAR
-    if 0.0 <= x < columns and 0.0 <= y < rows:
-        t, ix, iy = 0.0, int(x), int(y)
-    else:
-        t, ix, iy = grid_entry(rows, columns, x, y, dx, dy, per_x, per_y)
+    t, ix, iy = grid_entry(rows, columns, x, y, dx, dy, per_x, per_y)
     if t >= reach:
         return reach
     right, up = per_x > 0.0, per_y > 0.0
     way = (0 if right else 1) + (0 if up else 2)
     if free[way, iy, ix] == INSIDE:
         return t
-    end = min(reach, ((columns if right else 0) - x) * per_x, ((rows if up else 0) - y) * per_y)
     # the edge of a square of side s lies at line ix + s for a ray to the right, at ix + 1 - s for one to the left
-    way_x, way_y = (1 if right else -1), (1 if up else -1)
-    near_x, near_y = (0 if right else 1), (0 if up else 1)
+    way_x, near_x = (1, 0) if right else (-1, 1)
+    way_y, near_y = (1, 0) if up else (-1, 1)
     while True:
         side = int(free[way, iy, ix])
         if side == 0:
@@ -113,7 +111,7 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
         ty = (iy + near_y + way_y * side - y) * per_y
         leaps_x = tx < ty
         t = tx if leaps_x else ty
-        if t >= end:
+        if t >= reach:
             return reach
         across = (y if leaps_x else x) + t * (dy if leaps_x else dx)
         cell = int(across)
@@ -122,6 +120,8 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
             cell = settle(at, across, per, t, i, side, rising, leaps_x)
         ix = ix + way_x * side if leaps_x else cell
         iy = cell if leaps_x else iy + way_y * side
+        if ix < 0 or iy < 0 or ix >= columns or iy >= rows:
+            return reach
 
 
 @kernel

@@ -3,6 +3,7 @@
 numba costs 0.4 s to import, so it is imported when the first kernel is used, never when a module is read.
 It raises when its cache folder is read-only, so three places are tried: beside the source, the user's cache, none.
 No `fastmath` and no `parallel`: the same inputs must give the same bits. Division by zero gives inf or NaN, as in numpy.
+In kernels write loops, not `a[:] = b` or `np.any(a)`: each of those adds a second or more to the first compilation.
 """
 
 from __future__ import annotations

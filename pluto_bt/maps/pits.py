@@ -21,9 +21,10 @@ def look_into_pits(
     x: float, y: float, cos: float, sin: float, z: float, max_range: float, fan: Table, out: Table, segments: Table, rings: Table
 ) -> None:
     """Lengthen the beams that end on the ground where a hole is."""
-    if not np.any(rings[:, RING_HEIGHT] < 0.0):
-        return
-    for i in range(out.shape[0]):
+    n_holes = 0
+    for k in range(rings.shape[0]):
+        n_holes += rings[k, RING_HEIGHT] < 0.0
+    for i in range(out.shape[0] if n_holes else 0):
         slope = fan[SLOPE, i]
         if slope < 0.0 and out[i] == -z / slope:
             dx = fan[DIRECTION_X, i] * cos - fan[DIRECTION_Y, i] * sin

@@ -45,7 +45,8 @@ def scan_solids(
     if fan[HEAD, TILT_RAD] != tilt:
         aim_fan(fan, out.shape[0], tilt)
     if starts_inside(x, y, z, segments, rings, discs):
-        out[:] = 0.0
+        for i in range(out.shape[0]):
+            out[i] = 0.0
         return
     for i in range(out.shape[0]):
         out[i] = max_range * fan[STRETCH, i]

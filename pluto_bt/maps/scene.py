@@ -57,11 +57,20 @@ class Scene:
         self._angles = np.zeros(0)
         self._fan, self._ranges = fan_of(self._angles), np.zeros(0)
         self._cone_table = np.zeros((6, 0))
-        self._outline = np.zeros((0, 2))
+        self._outline = self._cells = np.zeros((0, 2))
         self._found = np.zeros((len(self.owners), 4))
         self._arrange()
         self._scan, self._cones = scan_solids.compiled(), cones_nearest.compiled()
         self._nearest, self._touching, self._hole_under = nearest_solid.compiled(), touching_solids.compiled(), hole_under.compiled()
+
+    def warm(self) -> None:
+        """Ask every question once, so that no later one waits for its kernel to be compiled or read from the cache."""
+        pose, triangle = (0.0, 0.0, 0.0), ((0.0, 0.0), (1e-3, 0.0), (0.0, 1e-3))
+        self.scan(pose, 0.0, 0.0, np.zeros(1), 0.0, np.zeros(1))
+        self.cones((0.0,), (0.0,), (0.0,), 0.0, 1e-3, 0.0, np.zeros(1))
+        self.contacts(triangle)
+        self.clearance(triangle)
+        self.over_hole(triangle)
 
     # what changes it
 
@@ -219,7 +228,7 @@ class Scene:
     def _answers(self, question: Callable[..., int], outline_m: ArrayLike) -> list[Nearest]:
         """What a kernel finds around an outline."""
         outline = self._take_outline(outline_m)
-        count = question(outline, self._segments, self._blocks, self._rings, self._discs, self._free, self._frame, self._found)
+        count = question(outline, self._segments, self._blocks, self._rings, self._discs, self._free, self._frame, self._cells, self._found)
         if count < 0:
             raise ValueError(f"the corners of an outline are finite, not {outline.tolist()}")
         return [Nearest(distance_m, x_m, y_m, self.owners[int(owner)]) for distance_m, x_m, y_m, owner in self._found[:count].tolist()]
@@ -230,6 +239,6 @@ class Scene:
         if self._outline.shape != corners.shape:
             if corners.ndim != 2 or len(corners) < 3 or corners.shape[1] != 2:
                 raise ValueError(f"an outline has three or more corners (x, y), not {corners.tolist()}")
-            self._outline = np.zeros(corners.shape)
+            self._outline, self._cells = np.zeros(corners.shape), np.zeros(corners.shape)
         self._outline[:] = corners
         return self._outline

@@ -13,7 +13,7 @@ from pluto_bt.skills.avoid import Avoid as Skill
 from pluto_bt.skills.avoid import AvoidParameters, AvoidSenses
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
-from pluto_bt.skills.obstacles import Planar
+from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
@@ -78,13 +78,14 @@ class Avoid:
         self._link.tell(now_s, self._rest(now_s))
 
     def _halt(self, now_s: float) -> None:
-        self._drive.post("avoid", ActuatorState(now_s))
+        self._drive.stop("avoid", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
 
     def _senses(self, now_s: float, data: tuple[float, ...]) -> AvoidSenses:
         oldest_s = now_s - self._parameters.pose_stale_s
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
-        return AvoidSenses(_planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s), raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
+        pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
+        return AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

@@ -56,12 +56,12 @@ class Drive:
         """The thread stops: zero velocity, and -10 for who asks."""
         now_s = self._clock.now_s()
         self._link.is_running = False
-        self._base.post("drive", ActuatorState(now_s))
+        self._base.stop("drive", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
         self._link.tell(now_s, self._rest(now_s))
 
     def _release(self, now_s: float, command: ActuatorState) -> None:
+        self._base.stop("drive", now_s)
         self._link.release()
-        self._base.post("drive", ActuatorState(now_s))
         self._link.tell(now_s, self._rest(now_s), command)
 
     def _rest(self, now_s: float) -> FVectorState:

@@ -8,7 +8,7 @@ from pluto_bt.blackboard import Blackboard
 from pluto_bt.blackboard.messages import ActuatorState, LaserScan
 from pluto_bt.blackboard.poses import share_between
 from pluto_bt.maps.platform import Platform
-from pluto_bt.skills.obstacles import Planar
+from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
 
 

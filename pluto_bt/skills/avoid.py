@@ -20,8 +20,7 @@ from pluto_bt.skills.drive import DriveParameters, drive_limits, is_finite
 from pluto_bt.skills.goto import Goto
 from pluto_bt.skills.heading import regulate, wrap
 from pluto_bt.skills.limits import STILL, Twist, within
-from pluto_bt.skills.obstacles import Planar
-from pluto_bt.skills.outline import Array, outline_of
+from pluto_bt.skills.outline import Array, Planar, outline_of
 from pluto_bt.skills.sight import ScanView, Sight
 from pluto_bt.skills.sonar import where_word
 from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
@@ -130,7 +129,7 @@ class Avoid:
         if kind is CommandType.VELOCITY:
             twist = within(self.command.velocity, self._limits)
         elif senses.pose is None or raw_rad is None:
-            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading was commanded, and it is not known where the robot points"))
+            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading is commanded, and nobody knows where the robot points"))
             return self._post(0, 0.0, STILL, self._order_s)
         else:
             heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
@@ -157,7 +156,7 @@ class Avoid:
             self.verdict = kept(self.verdict, fault)
             self._goto.pause(now_s, dt_s)
             return self._post(0, 0.0, STILL, now_s)
-        points = self.sight.points(senses.dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR))
+        points = self.sight.points(senses.dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR), now_s)
         is_moving = abs(senses.twist[0]) > 0.02 or abs(senses.twist[1]) > 0.05
         way = self._goto.step(now_s, senses.pose, senses.dead, points, is_moving)
         self.goto_status = way.status
@@ -215,10 +214,10 @@ class Avoid:
             return 1.0, ALL_WELL
         if senses.dead is None:
             return 0.0, Verdict(LinkStatus.LASER_SLOW_STOP, reasons.NO_POSE, "without dead reckoning it is not known where the obstacles are now")
-        share, verdict = self._clear_share(self.sight.points(senses.dead, True, False), twist, senses.twist)
+        share, verdict = self._clear_share(self.sight.points(senses.dead, True, False, now_s), twist, senses.twist)
         blind_mps = self.parameters.blind_speed_mps
         if twist[0] < -blind_mps and not self.sight.sees_behind(bool(avoidance & Avoidance.SONAR)) and share > blind_mps / -twist[0]:
-            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "the laser does not see behind: backing slowly")
+            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "no sensor sees behind: backing slowly")
         return share, verdict
 
     def _clear_share(self, points: Array, wanted: Twist, now: Twist) -> tuple[float, Verdict]:
@@ -235,7 +234,7 @@ class Avoid:
         return share, verdict
 
     def _seen(self, points: Array, which: int) -> Verdict:
-        x_m, y_m, _ = points[which].tolist()
+        x_m, y_m = points[which, :2].tolist()
         text = f"obstacle {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
         return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, text)
 

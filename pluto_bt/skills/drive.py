@@ -140,7 +140,7 @@ class Drive:
         if self._is_stopped:
             return STILL, True, Verdict(reason=reasons.STOPPED, text="stop was commanded")
         if self._is_bad:
-            return STILL, True, Verdict(reason=reasons.BAD_COMMAND, text=f"drive takes cmdFlags 0, 1, 10, 11 with finite numbers, not {command.flags}")
+            return STILL, True, Verdict(reason=reasons.BAD_COMMAND, text=f"drive takes finite numbers and cmdFlags 0, 1, 10, 11; not {command.flags}")
         raw = senses.raw
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
             return STILL, True, Verdict(reason=reasons.ODOMETRY_STALE, text=f"no odometry for more than {p.odometry_stale_s:g} s")
@@ -177,6 +177,6 @@ class Drive:
         share = allowed_share(free_s, twist, self.limits, latency_s)
         if share >= 1.0:
             return twist, False, ALL_WELL
-        x_m, y_m, _ = self._echoes[which].tolist()
+        x_m, y_m = self._echoes[which, :2].tolist()
         text = f"echo {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
         return (twist[0] * share, twist[1] * share), share == 0.0, Verdict(sonar_code(x_m, y_m, self._outline), reasons.SONAR, text)

@@ -13,8 +13,7 @@ from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.heading import wrap
 from pluto_bt.skills.limits import Limits
-from pluto_bt.skills.obstacles import Planar
-from pluto_bt.skills.outline import Array, Outline
+from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.steering import ROOM_M, Steer, Steering
 from pluto_bt.skills.sweep import first_contact
 
@@ -47,7 +46,8 @@ class Goto:
         speed_mps, turn_radps = command.velocity
         most, p = self._most, self.parameters
         speed_mps = min(speed_mps if speed_mps > 0.0 else p.goto_speed_mps, most.speed_mps)
-        self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=min(turn_radps, most.turn_rate_radps) if turn_radps > 0.0 else most.turn_rate_radps)
+        turn_radps = min(turn_radps if turn_radps > 0.0 else math.inf, most.turn_rate_radps)
+        self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=turn_radps)
         self._goal = command.position
         self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
         self._tolerance_m = command.acceleration[0] if command.acceleration[0] > 0.0 else p.goto_tolerance_m
@@ -69,7 +69,7 @@ class Goto:
         Args:
             pose: of the robot in the frame of the goal.
             odometry: of the robot in a frame that never jumps.
-            points: (n, 3) obstacles in the robot frame with margins.
+            points: (n, 5) obstacles in the robot frame: x, y, margin, velocity.
             is_moving: whether the robot really moved since the last step.
         """
         dx, dy = self._goal[0] - pose[0], self._goal[1] - pose[1]

@@ -12,6 +12,7 @@ SLOW_ANGLE_RAD = math.radians(50.0)  # at this error the robot turns on the spot
 CAR_CREEP = 0.3  # share of the speed that a car keeps, since it turns only while it rolls
 LOOK_AHEAD_M = 1.0  # a sideways offset is steered out over about this distance
 MAX_BACK_RAD = math.radians(15.0)  # the steepest way back onto the line
+ON_COURSE_RAD = math.radians(2.0)  # the turn has ended
 NEW_LINE_RAD = math.radians(2.0)  # a target that moves more than this begins a new line
 
 
@@ -42,6 +43,7 @@ class Line:
     def __init__(self) -> None:
         self._target_rad: float | None = None
         self._distance_m = 0.0
+        self._is_on_course = False
         self.offset_m = 0.0  # to the left of the line
 
     def error_rad(self, target_rad: float, heading_rad: float, distance_m: float) -> float:
@@ -56,8 +58,10 @@ class Line:
         is_new = self._target_rad is None or abs(wrap(target_rad - self._target_rad)) > NEW_LINE_RAD
         self._target_rad = target_rad
         if is_new or abs(error_rad) > SLOW_ANGLE_RAD / 2.0:
-            self.offset_m = 0.0  # the line begins where the turn ends
-            return error_rad
+            self.offset_m, self._is_on_course = 0.0, False
+        self._is_on_course = self._is_on_course or abs(error_rad) < ON_COURSE_RAD
+        if not self._is_on_course:
+            return error_rad  # the line begins where the turn ends
         self.offset_m -= driven_m * math.sin(error_rad)
         back_rad = clamp(math.atan2(self.offset_m, LOOK_AHEAD_M), MAX_BACK_RAD)
         return error_rad - math.copysign(back_rad, back_rad * driven_m) if driven_m else error_rad

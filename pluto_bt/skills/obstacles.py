@@ -5,19 +5,17 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.kernel import kernel
 from pluto_bt.skills.avoid_parameters import AvoidParameters
-from pluto_bt.skills.outline import Array
+from pluto_bt.skills.movers import Mask, Movers, came_closer
+from pluto_bt.skills.outline import Array, Planar
 
-Planar = tuple[float, float, float]  # x m, y m, theta rad
-Mask = NDArray[np.bool_]
-X, Y, MARGIN, SINCE = range(4)  # columns of the memory
+X, Y, MARGIN, SINCE, VX, VY = range(6)  # columns of the memory
 FIELD_EDGE_RAD = math.radians(1.0)  # memory this near the edge of the field of view is kept: the edge beam may just miss it
 LONE_STEP_M = 0.3  # a single beam so much shorter than both neighbours needs the scan before to confirm it
-CAME_CLOSER_M = 0.25  # a point so much nearer than the scan before saw free space has moved there
+FORETELL_S = 1.0  # what moves is thought to go on for so long after it was seen
 
 
 class Obstacles:
@@ -29,15 +27,21 @@ class Obstacles:
 
     def forget(self) -> None:
         """Nothing is known."""
-        self._seen = np.zeros((0, 4))  # the newest scan
-        self._kept = np.zeros((0, 4))  # what left the field of view
-        self._echoes = np.zeros((0, 4))  # those that the laser does not explain
-        self._explained = np.zeros((0, 4))  # those that say what the laser says better; they count where the laser does not
+        self._seen = np.zeros((0, 6))  # the newest scan
+        self._kept = np.zeros((0, 6))  # what left the field of view
+        self._echoes = np.zeros((0, 6))  # those that the laser does not explain
+        self._explained = np.zeros((0, 6))  # those that say what the laser says better; they count where the laser does not
+        self._movers = Movers()
         self._last_ranges_m: Array | None = None
         self._last_pose: Planar = (0.0, 0.0, 0.0)
 
     def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, now_s: float) -> None:
-        """Take a scan that was taken from `laser` (odometry frame, yaw with the wrist's pan), `z_m` above the ground and looking down by `tilt_rad`."""
+        """Take a scan.
+
+        Args:
+            laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
+            z_m, tilt_rad: height of the laser above the ground, and how far it looked down.
+        """
         p, ranges = self.parameters, scan.ranges_m
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(ranges))
         near = (ranges > 0.0) & (ranges < p.reach_m + 1.0) & ~self._is_lone(ranges)  # NaN compares False
@@ -46,10 +50,12 @@ class Obstacles:
             near &= height_m > 0.05  # the rest is the ground
         r, bearing = ranges[near], angles[near]
         x, y = r * np.cos(bearing) * math.cos(tilt_rad), r * np.sin(bearing)
-        seen = np.empty((len(r), 4))
-        seen[:, MARGIN] = np.where(self._has_moved(ranges, near, laser, scan), p.moving_margin_m, p.margin_m)
-        seen[:, SINCE] = now_s
+        seen = np.zeros((len(r), 6))
         _place(x, y, laser, seen)
+        seen[:, SINCE] = scan.stamp_s
+        moved = self._has_moved(ranges, near, laser, scan)
+        moves, seen[:, VX:] = self._movers.velocities(seen[:, :MARGIN], np.flatnonzero(near), moved, scan.stamp_s)
+        seen[:, MARGIN] = np.where(moves, p.moving_margin_m, p.margin_m)
         self._keep_what_left_the_field(laser, scan, now_s)
         self._seen = seen
         self._last_ranges_m, self._last_pose = (ranges if tilt_rad == 0.0 else None), laser
@@ -60,14 +66,14 @@ class Obstacles:
         self._echoes = _renewed(self._echoes, unexplained, robot, oldest_s, now_s)
         self._explained = _renewed(self._explained, explained, robot, oldest_s, now_s)
 
-    def around(self, robot: Planar, with_laser: bool, with_sonar: bool, beyond_m: float = 0.0) -> Array:
-        """(n, 3) x, y in the robot frame and margin, of all that is remembered nearer than the reach and `beyond_m`."""
+    def around(self, robot: Planar, with_laser: bool, with_sonar: bool, now_s: float, beyond_m: float = 0.0) -> Array:
+        """(n, 5) x, y, margin, velocity x, y in the robot frame, of all that is remembered nearer than the reach and `beyond_m`."""
         parts = ([self._seen, self._kept] if with_laser else []) + ([self._echoes] if with_sonar else [])
         if with_sonar and not with_laser:
             parts.append(self._explained)
         if not parts:
-            return np.zeros((0, 3))
-        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], self.parameters.reach_m + beyond_m)
+            return np.zeros((0, 5))
+        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], now_s, self.parameters.reach_m + beyond_m)
 
     def _is_lone(self, ranges: Array) -> Mask:
         """Single short beams that the scan before does not confirm: dazzle, rain, a leaf."""
@@ -85,7 +91,7 @@ class Obstacles:
         count = int(np.count_nonzero(near))
         if before is None or len(before) != len(ranges):
             return np.zeros(count, dtype=bool)
-        return _came_closer(ranges, near, before, laser, self._last_pose, scan.angle_min_rad, scan.angle_step_rad, count)
+        return came_closer(ranges, near, before, laser, self._last_pose, scan.angle_min_rad, scan.angle_step_rad, count)
 
     def _keep_what_left_the_field(self, laser: Planar, scan: LaserScan, now_s: float) -> None:
         """The scan decides about all that lies in its field of view; what lies outside stays for a while."""
@@ -98,7 +104,8 @@ class Obstacles:
         bearing = np.arctan2(c * dy - s * dx, c * dx + s * dy)
         last_rad = scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
         outside = (bearing < scan.angle_min_rad + FIELD_EDGE_RAD) | (bearing > last_rad - FIELD_EDGE_RAD)
-        self._kept = old[outside & (old[:, SINCE] > now_s - p.memory_s) & (np.hypot(dx, dy) < p.reach_m + 1.0)]
+        memory_s = np.where((old[:, VX] == 0.0) & (old[:, VY] == 0.0), p.memory_s, p.walker_memory_s)
+        self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < p.reach_m + 1.0)]
 
 
 def _renewed(old: Array, points: Array, robot: Planar, oldest_s: float, now_s: float) -> Array:
@@ -106,7 +113,7 @@ def _renewed(old: Array, points: Array, robot: Planar, oldest_s: float, now_s: f
     old = old[old[:, SINCE] > oldest_s]
     if not len(points):
         return old
-    fresh = np.empty((len(points), 4))
+    fresh = np.zeros((len(points), 6))
     fresh[:, MARGIN] = points[:, 2]
     fresh[:, SINCE] = now_s
     _place(points[:, 0], points[:, 1], robot, fresh)
@@ -121,38 +128,17 @@ def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:
 
 
 @kernel
-def _came_closer(
-    ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int
-) -> Mask:
-    """For each near beam, whether its end lies in what the scan before saw as free space (by CAME_CLOSER_M, in three beams side by side)."""
-    moved = np.zeros(count, dtype=np.bool_)
-    c_now, s_now, c_last, s_last = np.cos(laser[2]), np.sin(laser[2]), np.cos(last[2]), np.sin(last[2])
-    k = -1
-    for i in range(ranges.shape[0]):
-        if not near[i]:
-            continue
-        k += 1
-        angle = angle_min_rad + angle_step_rad * i
-        x, y = ranges[i] * np.cos(angle), ranges[i] * np.sin(angle)
-        dx, dy = laser[0] + c_now * x - s_now * y - last[0], laser[1] + s_now * x + c_now * y - last[1]
-        x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
-        j = int(np.round((np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad))
-        if j < 1 or j > before.shape[0] - 2:
-            continue
-        free_m = min(before[j - 1], before[j], before[j + 1])
-        moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
-    return moved
-
-
-@kernel
-def _seen_from(points: Array, x_m: float, y_m: float, theta_rad: float, reach_m: float) -> Array:
-    """The points nearer than `reach_m`, in the frame (x, y, theta), with their margins: (n, 3)."""
-    out = np.zeros((points.shape[0], 3))
+def _seen_from(points: Array, x_m: float, y_m: float, theta_rad: float, now_s: float, reach_m: float) -> Array:
+    """The points nearer than `reach_m` where they are now, in the frame (x, y, theta): (n, 5) x, y, margin, velocity."""
+    out = np.zeros((points.shape[0], 5))
     c, s = np.cos(theta_rad), np.sin(theta_rad)
     n = 0
     for i in range(points.shape[0]):
-        dx, dy = points[i, 0] - x_m, points[i, 1] - y_m
+        gone_s = min(now_s - points[i, 3], FORETELL_S)
+        vx, vy = points[i, 4], points[i, 5]
+        dx, dy = points[i, 0] + vx * gone_s - x_m, points[i, 1] + vy * gone_s - y_m
         if dx * dx + dy * dy < reach_m * reach_m:
             out[n, 0], out[n, 1], out[n, 2] = c * dx + s * dy, c * dy - s * dx, points[i, 2]
+            out[n, 3], out[n, 4] = c * vx + s * vy, c * vy - s * vx
             n += 1
     return out[:n]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pluto_bt.maps.platform import Point
 
 Array = NDArray[np.float64]
+Planar = tuple[float, float, float]  # a pose on the ground: x m, y m, theta rad
 
 
 @dataclass(frozen=True, slots=True)

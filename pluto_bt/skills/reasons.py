@@ -1,4 +1,4 @@
-"""The words with which the links of the chain say why the robot does not move as commanded. Closed list; `FVectorState.reason` is one of them or ""."""
+"""The words with which the chain says why the robot does not move as commanded: `FVectorState.reason` is one of them, or ""."""
 
 from __future__ import annotations
 

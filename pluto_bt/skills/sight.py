@@ -12,8 +12,8 @@ from pluto_bt.blackboard.messages import LaserScan, SonarState
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
-from pluto_bt.skills.obstacles import Obstacles, Planar
-from pluto_bt.skills.outline import Array, Outline
+from pluto_bt.skills.obstacles import Obstacles
+from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.sonar import SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -76,9 +76,9 @@ class Sight:
             return ALL_WELL
         return Verdict(LinkStatus.SONAR_FRONT, reasons.SONAR_STALE, f"no usable echoes younger than {self.parameters.sonar_stale_s:g} s")
 
-    def points(self, robot: Planar, with_laser: bool, with_sonar: bool) -> Array:
-        """(n, 3) x, y in the robot frame and margin of what is known around the robot."""
-        return self._obstacles.around(robot, with_laser and self.laser is not None, with_sonar and self.ring is not None)
+    def points(self, robot: Planar, with_laser: bool, with_sonar: bool, now_s: float) -> Array:
+        """(n, 5) x, y, margin, velocity x, y in the robot frame of what is known around the robot."""
+        return self._obstacles.around(robot, with_laser and self.laser is not None, with_sonar and self.ring is not None, now_s)
 
     def sees_behind(self, with_sonar: bool) -> bool:
         """True if something watches while the robot backs."""
@@ -118,7 +118,7 @@ class Sight:
         near = ranges < min(self.parameters.reach_m, ring.max_range_m)
         is_open = near
         if self.laser is not None and near.any():
-            known = self._obstacles.around(robot, True, False, BEYOND_M)
+            known = self._obstacles.around(robot, True, False, now_s, BEYOND_M)
             is_open = near & unexplained(ring.axes, ranges, ring.half_cone_rad, known, SLACK_M)
         margin_m = self.parameters.margin_m
         self._obstacles.add_echoes(ring.place(ranges, is_open, margin_m), ring.place(ranges, near & ~is_open, margin_m), robot, now_s)

@@ -41,7 +41,7 @@ class SonarRing:
         self.hears_ahead = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) < math.radians(45.0) for t in sonar.transducers)
 
     def points(self, ranges_m: Sequence[float], within_m: float, margin_m: float) -> Array | None:
-        """(n, 3) x, y, margin of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number)."""
+        """(n, 5) x, y, margin and no velocity of the echoes nearer than `within_m`; None if the readings make no sense (NaN, wrong number)."""
         ranges = np.array(ranges_m)
         if ranges.shape != (self.count,) or not np.isfinite(ranges).all():
             return None
@@ -55,18 +55,18 @@ class SonarRing:
         mask = wanted.repeat(3)
         echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(3)[mask]
         echoes = np.maximum(echoes, self._leaves_m[mask])
-        points = np.full((len(echoes), 3), margin_m)
+        points = np.zeros((len(echoes), 5))
+        points[:, 2] = margin_m
         points[:, :2] = self._places[mask] + self._ways[mask] * echoes[:, None]
         return points
 
 
 def sonar_code(x_m: float, y_m: float, outline: Outline) -> LinkStatus:
     """3, 4 or 5: whether an echo at (x, y) lies in front of, behind, or beside the outline."""
-    if x_m > outline.front_m or (abs(y_m) <= outline.side_m and x_m > 0.0):
-        return LinkStatus.SONAR_FRONT
-    if x_m < -outline.back_m or abs(y_m) <= outline.side_m:
-        return LinkStatus.SONAR_BACK
-    return LinkStatus.SONAR_SIDES
+    ahead_m, aside_m = max(x_m - outline.front_m, -outline.back_m - x_m), abs(y_m) - outline.side_m
+    if aside_m > ahead_m:
+        return LinkStatus.SONAR_SIDES
+    return LinkStatus.SONAR_FRONT if x_m > 0.0 else LinkStatus.SONAR_BACK
 
 
 def where_word(x_m: float, y_m: float) -> str:
@@ -81,7 +81,7 @@ def unexplained(axes: Array, ranges_m: Array, half_cone_rad: float, points: Arra
 
     Args:
         axes: (k, 3) transducers, x m, y m, theta rad.
-        points: (n, 3) known points in the robot frame.
+        points: (n, 5) known points in the robot frame.
         slack_m: how much farther than the echo a point may be and still explain it.
     """
     open_echo = np.ones(axes.shape[0], dtype=np.bool_)

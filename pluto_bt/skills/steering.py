@@ -26,6 +26,7 @@ LOOK_M = 1.5  # how far ahead room at the sides counts
 PUSH = 0.35  # how strongly obstacles push against a goal of force 1
 # the weights of a heading, in radians of detour that each is worth
 BLOCKED_RAD, NARROW_RAD, CHANGE_RAD_PER_RAD, OTHER_SIDE_RAD = 3.0, 0.7, 0.2, 1.6
+MEETING_MPS, MEETING_S = 0.5, 2.0  # how fast the robot goes to meet a walker, and how far ahead the walker's way is guessed
 SIDE_TAKEN_RAD = math.radians(15.0)
 
 _HEADINGS = -math.pi + STEP_RAD * np.arange(HEADINGS)
@@ -59,13 +60,14 @@ class Steer:
         """The heading to take.
 
         Args:
-            points: (n, 3) obstacles in the robot frame with margins.
+            points: (n, 5) obstacles in the robot frame: x, y, margin, velocity.
             goal_rad, goal_m: bearing and distance of the goal, robot frame.
             force: weight of the goal; > 1 weaker avoidance.
             turnable_rad: how far the robot can turn on the spot to the right and to the left, both positive.
             heading_rad: of the robot, in the frame in which decisions are remembered.
         """
         o = self._outline
+        points = met(points, MEETING_MPS, MEETING_S)
         headings = np.append(_HEADINGS, goal_rad)
         ways = corridors(points, headings, o.front_m, o.back_m, o.side_m, LOOK_M, ENOUGH_M + 1.0)
         enough_m = min(ENOUGH_M, max(goal_m, 0.1))
@@ -85,6 +87,20 @@ class Steer:
             self._side = 0.0
         elif self._side == 0.0 and abs(detour_rad) > SIDE_TAKEN_RAD:
             self._side = math.copysign(1.0, detour_rad)
+
+
+@kernel
+def met(points: Array, speed_mps: float, most_s: float) -> Array:
+    """The points where they will be about when the robot gets there: what crosses is passed behind, what comes is avoided early."""
+    out = points.copy()
+    for i in range(points.shape[0]):
+        if points[i, 3] != 0.0 or points[i, 4] != 0.0:
+            distance_m = np.sqrt(points[i, 0] ** 2 + points[i, 1] ** 2) + 0.01
+            closing_mps = -(points[i, 0] * points[i, 3] + points[i, 1] * points[i, 4]) / distance_m
+            ahead_s = min(most_s, distance_m / (speed_mps + max(0.0, closing_mps)))
+            out[i, 0] += points[i, 3] * ahead_s
+            out[i, 1] += points[i, 4] * ahead_s
+    return out
 
 
 @kernel

@@ -13,8 +13,8 @@ FLOOR_M = 0.03  # … but never nearer than this
 EXACT_M = 0.002
 DEEP_INSIDE_M = -0.1  # points deeper inside the outline are the robot itself
 BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve for slopes and worn brakes
-STANDSTILL_MPS = 0.01  # slower than this is not worth the motors' while
-STANDSTILL_RADPS = 0.02
+STANDSTILL_MPS = 0.02  # slower than this is not worth the motors' while
+STANDSTILL_RADPS = 0.04
 
 
 @kernel
@@ -25,7 +25,7 @@ def first_contact(points: Array, planes: Array, speed_mps: float, turn_rate_radp
     cannot be met before d / (its speed as seen from the robot), so that far is leapt.
 
     Args:
-        points: (n, 3) x m, y m in the robot frame, margin m.
+        points: (n, 5) x m, y m, margin m, velocity x and y m/s, in the frame of the robot at the start.
         planes: (k, 3) of `Outline`.
     Returns: (horizon_s, -1) if nothing is met before.
     """
@@ -33,7 +33,8 @@ def first_contact(points: Array, planes: Array, speed_mps: float, turn_rate_radp
     for i in range(points.shape[0]):
         x, y = points[i, 0], points[i, 1]
         lever_m = math.sqrt(x * x + y * y) + abs(speed_mps) * first_s
-        bound_mps = abs(speed_mps) + abs(turn_rate_radps) * lever_m
+        own_mps = math.sqrt(points[i, 3] ** 2 + points[i, 4] ** 2)
+        bound_mps = abs(speed_mps) + own_mps + abs(turn_rate_radps) * (lever_m + own_mps * first_s)
         if bound_mps <= 0.0:
             continue
         t_s, margin_m = 0.0, points[i, 2]
@@ -44,6 +45,7 @@ def first_contact(points: Array, planes: Array, speed_mps: float, turn_rate_radp
                 x_t, y_t = x - speed_mps * s / turn_rate_radps, y - speed_mps * (1.0 - c) / turn_rate_radps
             else:
                 x_t, y_t = x - speed_mps * t_s, y
+            x_t, y_t = x_t + points[i, 3] * t_s, y_t + points[i, 4] * t_s
             px, py = c * x_t + s * y_t, c * y_t - s * x_t
             distance_m = -1e9
             for k in range(planes.shape[0]):

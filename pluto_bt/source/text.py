@@ -64,11 +64,12 @@ def read_bytes(path: str | Path, shown_name: str, faults: Faults, *, max_bytes: 
         with path.open("rb") as file:
             data = file.read(max_bytes + 1)
     except FileNotFoundError:
-        faults.error(place, "no-file", f'there is no file "{shown_name}"', mend=_near_name(path))
+        faults.error(place, "no-file", f'there is no file "{shown_name}"', expected="a file", found="nothing", mend=_near_name(path))
     except IsADirectoryError:
-        faults.error(place, "no-file", f'"{shown_name}" is a folder, not a file')
+        faults.error(place, "no-file", f'"{shown_name}" is a folder', expected="a file", found="a folder")
     except (OSError, ValueError) as error:
-        faults.error(place, "no-file", f'"{shown_name}" cannot be read: {getattr(error, "strerror", None) or error}')
+        found = str(getattr(error, "strerror", None) or error)
+        faults.error(place, "no-file", f'"{shown_name}" cannot be read', expected="a file that may be read", found=found)
     else:
         if len(data) <= max_bytes:
             return data

@@ -11,11 +11,10 @@ from drivers.records import ScanRecord
 from pluto_bt.maps import platform
 from sim.body import Body
 from sim.noise import Noise
+from sim.sensors.range_noise import RangeNoise
 from sim.simtime import period_ns
 from sim.surroundings import Surroundings
 from sim.wrist import WristDevice
-
-DAZZLED_SHARE = 0.8  # a dazzled beam returns at most this share of the true range
 
 
 class LaserSensor:
@@ -24,7 +23,8 @@ class LaserSensor:
     def __init__(self, figures: platform.Laser, around: Surroundings, body: Body, wrist: WristDevice | None, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self.delay_s = figures.arrival_delay_s
-        self._figures, self._around, self._body, self._wrist, self._noise, self._ideal = figures, around, body, wrist, noise, ideal
+        self._figures, self._around, self._body, self._wrist, self._ideal = figures, around, body, wrist, ideal
+        self._noise = RangeNoise(noise, figures.noise_m, figures.resolution_m, 0.0, figures.max_range_m, figures.dropout_rate, figures.dazzle_rate)
         field_rad = math.radians(figures.field_deg)
         self._angle_min_rad = -0.5 * field_rad
         self._angle_step_rad = field_rad / (figures.beams - 1)
@@ -35,7 +35,7 @@ class LaserSensor:
         """One scan from where the laser is now; it arrives when the serial line has carried it."""
         ranges = self.true_ranges_m()
         if not self._ideal:
-            ranges = self._spoil(ranges)
+            ranges = self._noise.spoiled(ranges)
         ranges.setflags(write=False)
         return ScanRecord(now_s, now_s + self.delay_s, self._angle_min_rad, self._angle_step_rad, ranges)
 
@@ -47,19 +47,4 @@ class LaserSensor:
         pose_map_laser = (body.x_m + c * figures.x_m - s * figures.y_m, body.y_m + s * figures.x_m + c * figures.y_m, body.theta_rad + pan)
         ranges = np.zeros(figures.beams)
         self._around.scan(pose_map_laser, figures.z_m, tilt, self._angles_rad, figures.max_range_m, ranges)
-        return ranges
-
-    def _spoil(self, true_m: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What the scanner makes of the exact ranges."""
-        figures, noise = self._figures, self._noise
-        ranges = true_m + figures.noise_m * noise.normals(true_m.size)
-        fate = noise.uniforms(true_m.size)
-        dazzled = np.flatnonzero(fate > 1.0 - figures.dazzle_rate)
-        if dazzled.size:
-            ranges[dazzled] = true_m[dazzled] * (DAZZLED_SHARE * noise.uniforms(dazzled.size))
-        if figures.resolution_m > 0.0:
-            ranges = np.rint(ranges / figures.resolution_m) * figures.resolution_m
-        np.maximum(ranges, 0.0, out=ranges)
-        nothing = (true_m >= figures.max_range_m) | (fate < figures.dropout_rate) | (ranges > figures.max_range_m)
-        ranges[nothing] = figures.max_range_m
         return ranges

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
 import numpy as np
@@ -10,6 +11,7 @@ from drivers.records import SonarRecord
 from pluto_bt.maps import platform
 from sim.body import Body
 from sim.noise import Noise
+from sim.sensors.range_noise import RangeNoise
 from sim.simtime import period_ns
 from sim.surroundings import Surroundings
 
@@ -23,9 +25,9 @@ class SonarSensor:
 
     def __init__(self, figures: platform.Sonar, around: Surroundings, body: Body, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
-        self._figures, self._around, self._body, self._noise, self._ideal = figures, around, body, noise, ideal
-        self._x_m = np.array([t.x_m for t in figures.transducers])
-        self._y_m = np.array([t.y_m for t in figures.transducers])
+        self._figures, self._around, self._body, self._ideal = figures, around, body, ideal
+        self._noise = RangeNoise(noise, figures.noise_m, 0.0, figures.min_range_m, figures.max_range_m, figures.dropout_rate, 0.0)
+        self._mounts_m = np.array([complex(t.x_m, t.y_m) for t in figures.transducers])
         self._theta_rad = np.radians([t.theta_deg for t in figures.transducers])
         self._cone_rad = math.radians(figures.cone_deg)
         self._ranges_m = np.zeros(len(figures.transducers))
@@ -35,14 +37,8 @@ class SonarSensor:
         n = self._ranges_m.size
         if self._ideal:
             return SonarRecord(now_s, now_s, (DUMMY_RANGE_M,) * n)
-        figures, body, noise = self._figures, self._body, self._noise
-        c, s = math.cos(body.theta_rad), math.sin(body.theta_rad)
-        x, y = body.x_m + c * self._x_m - s * self._y_m, body.y_m + s * self._x_m + c * self._y_m
-        self._around.cones(x, y, self._theta_rad + body.theta_rad, figures.z_m, self._cone_rad, figures.max_range_m, self._ranges_m)
-        low, high, spread, lost = figures.min_range_m, figures.max_range_m, figures.noise_m, figures.dropout_rate
-        fate, chance = noise.uniforms(n).tolist(), noise.normals(n).tolist()
-        heard = [
-            min(max(range_m + spread * chance[i], low), high) if range_m < high and fate[i] >= lost else high
-            for i, range_m in enumerate(self._ranges_m.tolist())
-        ]
-        return SonarRecord(now_s, now_s, tuple(heard))
+        figures, body = self._figures, self._body
+        turn = cmath.exp(1j * body.theta_rad)  # one product turns all transducers: x + iy
+        at = self._mounts_m * turn + complex(body.x_m, body.y_m)
+        self._around.cones(at.real, at.imag, self._theta_rad + body.theta_rad, figures.z_m, self._cone_rad, figures.max_range_m, self._ranges_m)
+        return SonarRecord(now_s, now_s, tuple(self._noise.spoiled(self._ranges_m).tolist()))

@@ -97,7 +97,9 @@ class Rig:
         assert sample is not None and isinstance(sample.value, FVectorState)
         return sample.value
 
-    def order(self, flags: int, position: Point = (0.0, 0.0), velocity: Point = (0.0, 0.0), force: float = 0.0, to: str = "motion", tolerance: float = 0.0) -> str:
+    def order(
+        self, flags: int, position: Point = (0.0, 0.0), velocity: Point = (0.0, 0.0), force: float = 0.0, to: str = "motion", tolerance: float = 0.0
+    ) -> str:
         """Post a command as the mission does."""
         return self.inboxes[to].post("mission", ActuatorState(self.now, flags, position, velocity, (tolerance, 0.0), (force,)))
 
@@ -120,10 +122,14 @@ class Rig:
         return False
 
     def _step_links(self, k: int) -> None:
-        for name, every in (("motion", 10), ("avoid", 10), ("drive", 5)):
-            if k % every == 0 or name in self._woken:
+        for name, every in (("drive", 5), ("avoid", 10), ("motion", 10)):
+            if k % every == 0:
                 self._woken.discard(name)
                 self.links[name].step(self.now)
+        while self._woken:
+            name = min(self._woken)
+            self._woken.discard(name)
+            self.links[name].step(self.now)
         letter = self.inboxes["base"].take()
         if letter is not None:
             self._base, self._base_s = letter.command.velocity, self.now

@@ -11,6 +11,7 @@ _ATRV2_RING = [
     (0.5, 0.42, 90), (0.58, -0.065, 0), (0.58, -0.11, -15), (0.58, -0.165, -30), (0.5, -0.42, -90),
 ]  # fmt: skip
 _P3DX_ANGLES = [90, 50, 30, 10, -10, -30, -50, -90, -90, -130, -150, -170, 170, 150, 130, 90]
+_P3DX_RING = [(0.19 * math.cos(math.radians(a)), 0.17 * math.sin(math.radians(a)), a) for a in _P3DX_ANGLES]
 
 
 def _ring(rows: list[tuple[float, float, float]]) -> Sonar:
@@ -30,10 +31,12 @@ ATRV2 = Platform(
 PIONEER = Platform(
     name="pioneer",
     body=Body(
-        kinematics="differential", track_m=0.33, outline_m=((0.225, 0.1), (0.12, 0.2), (-0.12, 0.2), (-0.225, 0.1), (-0.225, -0.1), (-0.12, -0.2), (0.12, -0.2), (0.225, -0.1))
+        kinematics="differential",
+        track_m=0.33,
+        outline_m=((0.225, 0.1), (0.12, 0.2), (-0.12, 0.2), (-0.225, 0.1), (-0.225, -0.1), (-0.12, -0.2), (0.12, -0.2), (0.225, -0.1)),
     ),
     limits=Limits(max_speed_mps=1.2, max_turn_rate_dps=100.0, acceleration_mps2=0.3, deceleration_mps2=0.6, turn_acceleration_dps2=100.0),
-    devices=Devices(laser=Laser(x_m=0.1), bumpers=Bumpers(), sonar=_ring([(0.19 * math.cos(math.radians(a)), 0.17 * math.sin(math.radians(a)), a) for a in _P3DX_ANGLES])),
+    devices=Devices(laser=Laser(x_m=0.1), bumpers=Bumpers(), sonar=_ring(_P3DX_RING)),
 )  # fmt: skip
 CAR = Platform(
     name="car",

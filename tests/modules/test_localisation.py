@@ -246,3 +246,28 @@ def test_accepted_markers_set_position_and_slowly_pull_the_heading(make_rig: Any
     assert abs(pose.pose[3] - math.pi / 2) < 0.03
     assert abs(rig.newest(DR).pose[3] - math.pi / 2) > 0.1
     assert rig.newest("car/marker").refused == "" and rig.newest("car/marker").accepted_count == 100
+
+
+def test_a_far_marker_moves_the_pose_only_when_the_next_one_confirms_it(make_rig: Any) -> None:
+    rig = make_rig((0.5, 12.0, 0.0), kinematics="ackermann", dmu=Inertial(), speed=WheelSpeed(), marker=MarkerCamera())
+    local, marker = Local(rig.context), Marker(rig.context)
+    local.start(0.0)
+    seen = {1.0: (3.0, 9.0), 2.0: (0.5, 12.0), 6.0: (0.52, 12.01), 7.0: (1.4, 12.0), 8.0: (1.41, 12.0)}
+    verdicts, places = {}, {}
+    for k in range(1, 451):
+        now_s = round(k * DT_S, 6)
+        rig.put("car/speed", SpeedState(now_s, 0.0), now_s)
+        rig.put("dmu/state", ImuState(now_s, 0.0, bias_known=True), now_s)
+        if now_s in seen:
+            rig.devices["marker"].records = [MarkerRecord(now_s, now_s, 7, *seen[now_s], 0.0, 0.5)]
+        local.step(now_s)
+        marker.step(now_s)
+        if now_s in seen:
+            verdicts[now_s] = rig.newest("car/marker").refused
+        if now_s - 0.5 in seen:
+            places[now_s - 0.5] = rig.newest(POSE).pose[:2]
+    assert verdicts == {1.0: "", 2.0: "too-fast", 6.0: "", 7.0: "", 8.0: ""}
+    assert places[1.0] == pytest.approx((0.5, 12.0))  # the first marker is nonsense, and there is nothing to compare it with
+    assert places[6.0] == pytest.approx((0.52, 12.01))
+    assert places[7.0] == pytest.approx((0.52, 12.01))  # far from the estimate, for the first time
+    assert places[8.0] == pytest.approx((1.41, 12.0))  # confirmed

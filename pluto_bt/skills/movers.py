@@ -1,0 +1,94 @@
+"""Who walks there: pieces of a scan that stand where the scan before saw free space, and how fast they go."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pluto_bt.maps.kernel import kernel
+from pluto_bt.skills.outline import Array, Planar
+
+Mask = NDArray[np.bool_]
+CAME_CLOSER_M = 0.12  # a beam so much shorter than the scan before allows ends on something that moved there
+APART_M = 0.3  # neighbouring beams that differ more end on different things
+WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its visible part shifts as we pass
+MOVED_BEAMS = 2  # so many beams must end in former free space
+STEP_M = 0.5  # nothing that is tracked goes farther between two scans
+FASTEST_MPS = 2.0
+
+
+class Movers:
+    """Follows pieces from scan to scan. Velocities are in the frame of the points."""
+
+    def __init__(self) -> None:
+        self._centres = np.zeros((0, 2))
+        self._stamp_s = -np.inf
+
+    def velocities(self, points: Array, beams: NDArray[np.intp], moved: Mask, stamp_s: float) -> tuple[Mask, Array]:
+        """Which points belong to something that moves, and its velocity (0 where it was not seen before).
+
+        Args:
+            points: (n, 2) near points of a scan in the order of the beams.
+            beams: (n,) the number of each point's beam.
+            moved: (n,) whether the beam ends in what was free space.
+        """
+        n = len(points)
+        velocity = np.zeros((n, 2))
+        if n == 0:
+            self._centres, self._stamp_s = np.zeros((0, 2)), stamp_s
+            return moved, velocity
+        steps = np.hypot(points[1:, 0] - points[:-1, 0], points[1:, 1] - points[:-1, 1])
+        starts = np.concatenate(([0], 1 + np.flatnonzero((steps > APART_M) | (np.diff(beams) > 3))))
+        sizes = np.diff(np.append(starts, n))
+        centres = np.add.reduceat(points, starts, axis=0) / sizes[:, None]
+        last = np.append(starts[1:], n) - 1
+        widths = np.hypot(points[last, 0] - points[starts, 0], points[last, 1] - points[starts, 1])
+        is_mover = (np.add.reduceat(moved.astype(np.intp), starts) >= MOVED_BEAMS) & (widths < WIDEST_M)
+        piece_velocity = np.zeros((len(starts), 2))
+        for i in np.flatnonzero(is_mover).tolist():
+            piece_velocity[i] = self._velocity(centres[i], stamp_s)
+        self._centres, self._stamp_s = centres[widths < WIDEST_M], stamp_s
+        piece = np.repeat(np.arange(len(starts)), sizes)
+        velocity[:] = piece_velocity[piece]
+        return is_mover[piece], velocity
+
+    def _velocity(self, centre: Array, stamp_s: float) -> Array:
+        """From the nearest piece of the scan before; 0 if none was near."""
+        dt_s = stamp_s - self._stamp_s
+        if not len(self._centres) or not 0.0 < dt_s < 1.0:
+            return np.zeros(2)
+        steps = centre - self._centres
+        lengths = np.hypot(steps[:, 0], steps[:, 1])
+        nearest = int(np.argmin(lengths))
+        if lengths[nearest] > STEP_M:
+            return np.zeros(2)
+        return np.asarray(steps[nearest] / max(dt_s, float(lengths[nearest]) / FASTEST_MPS))
+
+
+@kernel
+def came_closer(
+    ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int
+) -> Mask:
+    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in three beams side by side.
+
+    Args:
+        ranges, before: (n,) this scan and the one before, of equal angles; NaN in `before` says nothing.
+        laser, last: where they were taken from, in one frame.
+    """
+    moved = np.zeros(count, dtype=np.bool_)
+    c_now, s_now, c_last, s_last = np.cos(laser[2]), np.sin(laser[2]), np.cos(last[2]), np.sin(last[2])
+    k = -1
+    for i in range(ranges.shape[0]):
+        if not near[i]:
+            continue
+        k += 1
+        angle = angle_min_rad + angle_step_rad * i
+        x, y = ranges[i] * np.cos(angle), ranges[i] * np.sin(angle)
+        dx, dy = laser[0] + c_now * x - s_now * y - last[0], laser[1] + s_now * x + c_now * y - last[1]
+        x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
+        j = int(np.round((np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad))
+        if j < 1 or j > before.shape[0] - 2:
+            continue
+        free_m = min(before[j - 1], before[j], before[j + 1])
+        moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
+    return moved
