@@ -25,6 +25,7 @@ class GyroBias:
         max_spread_radps: largest standard deviation of the samples that passes for standing still.
         bias_radps: 0 until `known`.
         taken: samples of the present attempt.
+        thrown_away: samples of the last attempt that failed.
     """
 
     samples_needed: int = 1000
@@ -33,6 +34,7 @@ class GyroBias:
     spread_radps: float = 0.0
     known: bool = False
     taken: int = 0
+    thrown_away: int = 0
     _mean: float = 0.0
     _squares: float = 0.0
 
@@ -59,4 +61,5 @@ class GyroBias:
         return BiasNews.KNOWN
 
     def _start_again(self) -> None:
+        self.thrown_away = self.taken or self.thrown_away
         self.taken, self._mean, self._squares = 0, 0.0, 0.0

@@ -14,24 +14,44 @@ from estimation.se2 import wrap_angle
 class HeadingSource(Protocol):
     """Turns what wheels and sensor say into the turn of one step."""
 
-    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None) -> tuple[float, bool]:
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None, bias_known: bool = True) -> tuple[float, bool]:
         """(turn in rad, True if the sensor measured it). `theta_rad` None = the sensor says nothing now."""
 
 
 class GyroHeading:
-    """Heading since the start from an integrated gyro: its changes count, its value does not."""
+    """Heading since the start from an integrated gyro: its changes count, its value does not.
 
-    __slots__ = ("_last_rad",)
+    While the gyro's bias is not known, the wheels teach it: a skidding robot's wheels are wrong about turns, by a share of the turn, but
+    right about going straight; so whatever turn the gyro shows then is its bias. (After Borenstein and Feng, Gyrodometry, 1996.)
+    Until a few such lessons are in, and wherever the wheels know of no turn (`teaches` False: the car), the wheels give the heading.
+    """
 
-    def __init__(self) -> None:
+    STRAIGHT_RADPS = 0.02  # the wheels turn by less: a lesson
+    LESSONS = 5  # to begin with; each makes the bias better
+    MEMORY = 1000  # lessons; then old ones fade, for the bias drifts
+
+    __slots__ = ("_bias_radps", "_last_rad", "_lessons", "_teaches")
+
+    def __init__(self, teaches: bool = True) -> None:
         self._last_rad: float | None = None
+        self._teaches = teaches
+        self._lessons = 0
+        self._bias_radps = 0.0
 
-    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None) -> tuple[float, bool]:
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None, bias_known: bool = True) -> tuple[float, bool]:
         """The change of theta since the last step; the wheels' turn in the first step with theta, and without it."""
         last, self._last_rad = self._last_rad, theta_rad
         if theta_rad is None or last is None:
             return wheel_turn_rad, False
-        return wrap_angle(theta_rad - last), True
+        turn_rad = wrap_angle(theta_rad - last)
+        if bias_known:
+            return turn_rad, True
+        if self._teaches and abs(wheel_turn_rad) < self.STRAIGHT_RADPS * dt_s:
+            self._lessons = min(self._lessons + 1, self.MEMORY)
+            self._bias_radps += ((turn_rad - wheel_turn_rad) / dt_s - self._bias_radps) / self._lessons
+        if self._lessons < self.LESSONS:
+            return wheel_turn_rad, False
+        return turn_rad - self._bias_radps * dt_s, True
 
 
 class AbsoluteHeading:
@@ -50,9 +70,9 @@ class AbsoluteHeading:
         self._offset_rad = 0.0
         self._averaged = 0
 
-    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None) -> tuple[float, bool]:
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None, bias_known: bool = True) -> tuple[float, bool]:
         """The turn that brings the heading to the sensor's, and True; without the sensor the wheels' turn, and False."""
-        if theta_rad is None:
+        if theta_rad is None or not bias_known:
             self.heading_rad += wheel_turn_rad
             return wheel_turn_rad, False
         if self._average(wheel_turn_rad, theta_rad):

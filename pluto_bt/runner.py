@@ -12,6 +12,7 @@ from typing import Any
 
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
+from pluto_bt.gateway.listen import parse_address
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wall_ns
@@ -23,24 +24,10 @@ from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 class Runner:
     """One run. After `run`, `result`, `system` and `mission` can be looked at."""
 
-    def __init__(
-        self,
-        inputs: Inputs,
-        mission: Mission,
-        clock: VirtualClock | MonotonicClock,
-        *,
-        max_time_s: float | None = None,
-        trace_path: str | Path | None = None,
-        on_event: Callable[[Event], None] = lambda event: None,
-        on_progress: Callable[[System], None] = lambda system: None,
-    ) -> None:
+    def __init__(self, inputs: Inputs, mission: Mission, clock: VirtualClock | MonotonicClock, options: Options) -> None:
         self.inputs = inputs
         self.mission = mission
-        options = Options(
-            world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
-            trace_path=Path(trace_path) if trace_path else None, on_event=on_event, on_progress=on_progress,
-        )  # fmt: skip
-        System(replace(options, trace_path=None, on_event=lambda event: None), VirtualClock()).rehearse()
+        System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()).rehearse()
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
@@ -119,14 +106,22 @@ def make_runner(
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
     topics = TopicGlobals()
-    common: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "topics": topics, "plugins": inputs.plugins, "file": str(inputs.mission_path)}
-    faults = check_mission(inputs.mission_path, nodes, **common)
+    of_file: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "file": str(inputs.mission_path)}
+    faults = check_mission(inputs.mission_path, nodes, topics=topics, plugins=inputs.plugins, **of_file)
     if any(fault.severity == "error" for fault in faults):
         raise MissionError(faults)
-    mission = load_mission(inputs.mission_path, nodes, clock, **common)
-    runner = Runner(inputs, mission, clock, max_time_s=max_time_s, trace_path=trace_path, on_event=on_event, on_progress=on_progress)
+
+    def load(text: str | Path, **more: Any) -> Mission:
+        return load_mission(text, nodes, clock, topics=topics, plugins=inputs.plugins, **more)
+
+    options = Options(
+        world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
+        trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
+        gateway=parse_address(gateway) if gateway is not None else None, load=load, on_event=on_event, on_progress=on_progress,
+    )  # fmt: skip
+    runner = Runner(inputs, load(inputs.mission_path, **of_file), clock, options)
     topics.view = lambda: runner.system.robot.snapshot
-    mission.attach(runner.system.robot)
+    runner.mission.attach(runner.system.robot)
     return runner
 
 

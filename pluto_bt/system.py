@@ -9,12 +9,12 @@ import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample
 from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState, Event
+from pluto_bt.gateway.listen import Address
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_file import RobotFile
@@ -24,7 +24,7 @@ from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
-from pluto_bt.runtime.watchdog import Hung, Watchdog, innermost
+from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.source import PlutoError
 from pluto_bt.trees.mission import Mission
 
@@ -47,6 +47,7 @@ MODULES: tuple[Module, ...] = (
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
+    Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
 )
 # fmt: on
 
@@ -65,10 +66,11 @@ class Options:
     map: World | None = None
     start: tuple[float, float, float] | None = None
     seed: int = 0
-    realtime: bool = False
-    speed: float = 1.0
     max_time_s: float | None = None
     trace_path: Path | None = None
+    has_gateway: bool = False
+    gateway: Address | None = None
+    load: Callable[[str], Mission] | None = None
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
 
@@ -118,7 +120,8 @@ class System:
         self._parts: dict[str, Part] = {}
         self.inboxes = {link: Inbox(link, self._owner_rule(above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        self._make_parts([row for row in modules if not row.device or row.device in self.simulator.devices])
+        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ())}
+        self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()
 
     # ------------------------------------------------------------------ making
@@ -131,13 +134,16 @@ class System:
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
         )  # fmt: skip
         self.robot = RobotLink(context)
-        context.extras.update(simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts)
+        context.extras.update(
+            system=self, simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts,
+            load=self.options.load, gateway=self.options.gateway,
+        )  # fmt: skip
         return context
 
     def _make_parts(self, rows: list[Module]) -> None:
-        made = {row.name: row.load()(self.context) for row in in_start_order(rows)}
+        made: dict[str, Any] = {row.name: row.load()(self.context) for row in in_start_order(rows)}
         self._parts = {row.name: Part(row, made[row.name], number, self) for number, row in enumerate(rows)}
-        self.executive: Any = made["executive"]
+        self.executive = made["executive"]
         self.executive.on_event = self.options.on_event
 
     def _join(self) -> None:
@@ -249,7 +255,7 @@ class System:
         else:
             part.fault = fault.kind if begins else ""
             if begins and fault.kind == "hang":
-                self._hung(part, None)
+                self._hung(part)
 
     def _leaf_fault(self, name: str, kind: str) -> None:
         """A leaf raises, gives no status or never returns, as the world script says; "" = its own work again."""
@@ -265,10 +271,10 @@ class System:
         if active is None or not active.mission.replace_step(name, step if kind else None):
             self.say("warning", "unknown-leaf", "world", f'the world script names no leaf of this mission: "{name}"')
 
-    def _hung(self, part: Part, frame: FrameType | None) -> None:
+    def _hung(self, part: Part) -> None:
         """`part` never returned: name it, or the leaf it is in, stop the robot and end the run."""
         active = self.executive.core.active
-        leaf = active.mission.node_in(frame) or active.mission.active_leaf() if part.module.name == "executive" and active is not None else ""
+        leaf = active.mission.current_leaf() if part.module.name == "executive" and active is not None else ""
         what = f'leaf "{leaf}" never returned' if leaf else f'module "{part.module.name}" never returned'
         part.fault = "hang"
         self._end("STOPPED", "hung", what)
@@ -322,10 +328,10 @@ class System:
                 while not is_over():
                     scheduler.run_until(self.clock.now_ns() + NS // 2, lambda: not is_over())
                     self.options.on_progress(self)
-        except Hung as hung:
+        except Hung:
             if scheduler.current is None:
                 raise
-            self._hung(scheduler.current, innermost(hung))
+            self._hung(scheduler.current)
 
     def _threads_until(self, scheduler: Threads, is_over: Callable[[], bool]) -> None:
         while not is_over():
@@ -333,7 +339,7 @@ class System:
             self.options.on_progress(self)
             stuck = scheduler.stuck_part(THREADS_LIMIT_S)
             if stuck is not None and stuck.fault != "hang":
-                self._hung(stuck, scheduler.frame_of(stuck))
+                self._hung(stuck)
 
     def _is_over(self) -> bool:
         mission = self.executive.core.mission

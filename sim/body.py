@@ -103,5 +103,3 @@ class Body:
         self._state[motion.BODY_DISTANCE] -= speed * TICK_S * (1.0 - share)
         self._state[motion.BODY_SPEED] = self._state[motion.BODY_TURN_RATE] = 0.0
         self._read()
-
-

@@ -9,6 +9,7 @@ import msgspec
 from drivers.records import Record
 from sim.device import Device
 from sim.record_faults import RecordFaults
+from sim.simtime import NS
 
 
 class Sensor(Protocol):
@@ -31,6 +32,14 @@ class Channel:
         self.due_ns = 0
         self._sensor, self._device = sensor, device
         self._arrival_s = 0.0
+
+    def send_past(self, for_s: float) -> None:
+        """Send what the sensor read while the robot stood at its start, up to the beginning of the run; it waits for its first reader."""
+        period_ns = self._sensor.period_ns
+        for k in range(round(for_s * NS) // period_ns, 0, -1):
+            record = self._sensor.sample(-k * period_ns / NS)
+            if record is not None:
+                self._device.send(record)
 
     def fire(self, now_ns: int, now_s: float) -> None:
         """Take the sample that is due."""

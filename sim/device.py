@@ -8,7 +8,7 @@ from drivers.records import Record
 from sim.motors import Motors
 from sim.simtime import SimTime
 
-UNREAD_LIMIT = 1024  # records kept for a reader that does not come; the oldest go first
+UNREAD_LIMIT = 2048  # records kept for a reader that does not come; the oldest go first
 
 
 class Device:

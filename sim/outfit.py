@@ -29,6 +29,8 @@ from sim.surroundings import Surroundings
 from sim.travel import Travel
 from sim.wrist import WristDevice
 
+STOOD_FOR_S = 21.0  # the robot has been switched on and standing for so long when the run begins: enough for the bias of its gyro
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -95,6 +97,8 @@ class Outfit:
         for name, figures in (("dmu", devices.dmu), ("imu", devices.imu)):
             if figures:
                 self._fit(name, InertialSensor(figures, s.body, s.ground, s.noise(name), s.ideal))
+        if devices.dmu:
+            self.channels["dmu"].send_past(STOOD_FOR_S)
         if devices.compass:
             n_shadows = sum(shadow.sensor == "compass" for shadow in s.world.shadows)
             self._fit("compass", CompassSensor(devices.compass, n_shadows, s.body, s.ground, s.noise("compass"), s.ideal))

@@ -151,7 +151,7 @@ class Simulator:
     def clearance_m(self) -> float:
         """Exact distance from the outline to everything solid, now; 0 in contact."""
         with self._turn:
-            return max(self._travel.look(), 0.0)
+            return self._travel.look()
 
     @property
     def min_clearance_m(self) -> float:

@@ -41,6 +41,9 @@ class Travel:
         self._body, self._outline, self._around, self._time = body, outline, around, time
         self._grown = outline.grown(RELEASE_M)
         self._free_m = -math.inf
+        self._seen: tuple[Pose, int | None] | None = None  # where, and among moving actors when, the last look was
+        self._gap_here_m = 0.0
+        self._changed = True
         self._touching: dict[str, None] = {}
         self.collisions: list[Contact] = []
         self.hit_by: list[Contact] = []
@@ -54,16 +57,21 @@ class Travel:
     def look(self) -> float:
         """The exact clearance now; also brings the bound and the minimum up to date."""
         body = self._body
-        gap = self._around.gap_m(self._outline.at(body.pose))
-        self.min_clearance_m = min(self.min_clearance_m, max(gap, 0.0))
-        self._free_m = min(gap, self._around.hole_gap_m(body.x_m, body.y_m, self._outline.radius_m))
+        seen = (body.pose, self._time.now_ns if self._around.fastest_mps else None)
+        if seen != self._seen:
+            self._seen = seen
+            self._gap_here_m = self._gap_m(body.pose)
+            self.min_clearance_m = min(self.min_clearance_m, self._gap_here_m)
+        self._free_m = min(self._gap_here_m, self._around.hole_gap_m(body.x_m, body.y_m, self._outline.radius_m))
         if self._free_m > RELEASE_M:
             self._touching.clear()
-        return gap
+        return self._gap_here_m
 
     def forget(self) -> None:
         """The world was changed: the bound holds no more."""
         self._free_m = -math.inf
+        self._seen = None
+        self._changed = True
 
     def advance(self, n_ticks: int, slip: float, blocked: bool) -> None:
         """Move time, body and actors on by `n_ticks`."""
@@ -89,6 +97,9 @@ class Travel:
         if self._body.pose != before:
             self._stop_at_contact(before, twist)
         self._time.jump_to(self._time.now_ns + TICK_NS)
+        if self._body.pose == before and not self._around.fastest_mps and not self._changed:
+            return  # it pushes, or stands: nothing has come nearer or gone
+        self._changed = False
         for contact in self._around.contacts(self._outline.at(self._body.pose)):
             self._note(contact, self._towards(contact, twist))
         if self._touching:
@@ -99,7 +110,7 @@ class Travel:
         """Hold the body at the first touch on its way, if there is one."""
         if self._gap_m(self._body.pose) > 0.0:
             return
-        gap_before = self._gap_m(before)
+        gap_before = self._gap_here_m if self._seen == (before, None) else self._gap_m(before)
         if gap_before <= 0.0:
             self._stop_if_deeper(before, twist)
             return

@@ -172,10 +172,11 @@ def solid(shape: Shape) -> Polygon | LineString:
     return Polygon(shape.points) if shape.kind == "polygon" else LineString(shape.points)
 
 
-@settings(max_examples=25, deadline=None)
-@given(shapes=SHAPES, commands=COMMANDS)
-def test_the_outline_never_enters_anything(shapes: list[Shape], commands: list[tuple[float, float]]) -> None:
-    world = room(*shapes)
+@settings(max_examples=40, deadline=None)
+@given(shapes=SHAPES, commands=COMMANDS, someone_walks=st.booleans())
+def test_the_outline_never_enters_what_stands(shapes: list[Shape], commands: list[tuple[float, float]], someone_walks: bool) -> None:
+    walker = Actor("person", 0.25, 1.3, True, points((4.0, 0.3), (-4.0, -0.3), (0.0, 3.0)))
+    world = room(*shapes, actors=(walker,) * someone_walks)
     things = [solid(shape) for shape in world.shapes]
     sim = Simulator(world, cart(), 0)
     if any(Polygon(sim.outline_m).intersects(thing) for thing in things):

@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pluto_bt.source import Fault, Faults
@@ -105,6 +105,7 @@ def test_toml_sizes(tmp_path: Path) -> None:
     assert [fault.code for fault in faults.in_order()] == ["no-file"]
 
 
+@settings(deadline=None)
 @given(st.text(alphabet="ab.=[]{}\"',#\n 1\\-", max_size=40))
 def test_any_toml_is_read_as_tomllib_reads_it_or_is_a_fault(text: str) -> None:
     faults = Faults()
@@ -119,6 +120,7 @@ KEYS = st.text(alphabet="abc-_1", min_size=1, max_size=3)
 VALUES = st.recursive(st.integers(0, 9), lambda below: st.lists(below, max_size=3) | st.dictionaries(KEYS, below, max_size=3), max_leaves=6)
 
 
+@settings(deadline=None)
 @given(st.dictionaries(KEYS, VALUES, max_size=4))
 def test_every_toml_key_is_found_where_it_stands(tables: dict[str, object]) -> None:
     def written(value: object) -> str:
@@ -197,6 +199,7 @@ def test_yaml_sizes() -> None:
     assert [fault.code for fault in faults.in_order()] == ["too-large"]
 
 
+@settings(deadline=None)
 @given(st.text(alphabet="ab:-[]{}&*!|>'\"#\n ,?1.\x00\x85", max_size=40))
 def test_any_yaml_is_a_mapping_or_a_fault(text: str) -> None:
     faults = Faults()

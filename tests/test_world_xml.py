@@ -268,7 +268,8 @@ def test_the_fault_table_and_the_schema_name_the_same_kinds() -> None:
     assert values == list(fault_table.KINDS)
     assert len(fault_table.ROWS) == len(fault_table.FAULTS)
     assert set(fault_table.KINDS) == {
-        "off", "frozen", "stuck", "nan", "garbage", "wrong", "slow", "late", "drop", "fatal", "noise", "bias", "slip", "jump", "blocked", "hang", "raise",
+        "off", "frozen", "stuck", "nan", "garbage", "wrong", "slow", "late", "drop", "fatal", "noise", "bias", "slip", "jump", "blocked",
+        "hang", "raise",
     }  # fmt: skip
 
 
@@ -363,7 +364,7 @@ def test_heavy_libraries_are_not_loaded_by_reading_a_world() -> None:
 def test_polygons_agree_with_a_geometry_library() -> None:
     from shapely import Polygon
 
-    from pluto_bt.maps.polygons import crossing, is_flat, without_repeats
+    from pluto_bt.maps.polygons import _crossing_of_many, crossing, is_flat, without_repeats
 
     generator = np.random.default_rng(1)
     valid = 0
@@ -372,5 +373,6 @@ def test_polygons_agree_with_a_geometry_library() -> None:
         if len(corners) >= 3:
             is_good = not is_flat(corners) and crossing(corners) is None
             assert is_good == bool(Polygon(corners).is_valid), corners.tolist()
+            assert (crossing(corners) is None) == (_crossing_of_many(corners) is None), corners.tolist()
             valid += is_good
     assert 30 < valid < 270

@@ -6,7 +6,7 @@ from pathlib import Path
 from xml.sax.saxutils import escape, quoteattr
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pluto_bt.source import Fault, Faults, Place
@@ -200,6 +200,7 @@ def plain(element: XmlElement) -> tuple[str, dict[str, str], list[object]]:
     return element.tag, {name: attribute.value for name, attribute in element.attributes.items()}, [plain(child) for child in element.children]
 
 
+@settings(deadline=None)
 @given(TREES, TEXTS)
 def test_what_is_written_is_read_back_and_stands_where_its_place_says(tree: tuple[str, dict[str, str], list[object]], text: str) -> None:
     source = written(tree, text)
@@ -216,6 +217,7 @@ def test_what_is_written_is_read_back_and_stands_where_its_place_says(tree: tupl
             assert attribute.place.text[attribute.place.column - 1 :].startswith(attribute.name + "=")
 
 
+@settings(deadline=None)
 @given(st.text(alphabet="<>/='\"&;!-[]? ab\n\0CDAT#x1", max_size=60))
 def test_any_text_gives_a_tree_or_a_fault(text: str) -> None:
     faults = Faults()
@@ -265,6 +267,7 @@ def test_bytes_that_are_no_text(tmp_path: Path, data: bytes, line: int, column: 
     assert (fault.file, fault.line, fault.column, fault.message) == ("shown.xml", line, column, message)
 
 
+@settings(deadline=None)
 @given(st.binary(max_size=200))
 def test_random_bytes_are_a_fault_or_a_tree(data: bytes) -> None:
     from pluto_bt.source.text import decode

@@ -6,6 +6,7 @@ import json
 import sys
 
 from pluto_bt.commands.options import Parser
+from pluto_bt.source import PlutoError
 
 COLUMNS = ("name", "group", "state", "steps", "failures", "overruns", "worst_ms", "text")
 
@@ -16,14 +17,15 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--gateway", metavar="HOST:PORT", default="127.0.0.1:7500")
     parser.add_argument("--json", action="store_true", help="one JSON object")
     args = parser.parse_args(argv)
-    from pluto_bt.gateway.client import Client, ClientError
+    from pluto_bt.gateway.client import Client, GatewayError
+    from pluto_bt.gateway.listen import parse_address
 
     try:
-        with Client.connect(args.gateway) as client:
-            rows = client.modules()
-    except (ClientError, OSError) as error:
-        print(f"pluto ps: no robot answers at {args.gateway}: {error}\n  start one with `pluto run MISSION.xml --realtime`", file=sys.stderr)
-        return 1
+        with Client(*parse_address(args.gateway)) as client:
+            rows = [dict(row.attrib, text=row.text or "") for row in client.request("modules")]
+    except PlutoError as error:
+        print(f"pluto ps: {error}\n  start a robot with `pluto run MISSION.xml --realtime`", file=sys.stderr)
+        return 1 if isinstance(error, GatewayError) else 2
     if args.json:
         print(json.dumps({"modules": rows}))
         return 0

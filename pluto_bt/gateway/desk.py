@@ -57,19 +57,13 @@ class Desk:
     # the stepping thread -----------------------------------------------------------------------------------------
     def step(self, now_s: float) -> None:
         """Notice stops, leases that ran out, and how the run goes on."""
-        while self._stopped:
-            self._runs.finish("cancelled", "stopped", f"{self._stopped.popleft()} stopped the robot")
-        lost = self._leases.expire(now_s)
-        if lost is not None:
-            self._lost(lost, "ran out")
+        self._notice(now_s)
         self._runs.poll(now_s)
 
     def handle(self, ask: Ask, stops: int, now_s: float) -> None:
         """Answer one request; `stops` is the count of stops when it came."""
         key = self._meet(ask)
-        lost = self._leases.expire(now_s)
-        if lost is not None:
-            self._lost(lost, "ran out")
+        self._notice(now_s)
         try:
             reply, later = self._answer(ask, key, stops, now_s)
         except RefusedError as refusal:
@@ -79,6 +73,14 @@ class Desk:
         self._send(Answer(ask.client, "direct", with_id(reply, ask.request.id)))
         for follow in later:
             self._tell(key, follow)
+
+    def _notice(self, now_s: float) -> None:
+        """What happened since: a stop ends the run that it met (not one that is asked for after it), a lease ran out."""
+        while self._stopped:
+            self._runs.finish("cancelled", "stopped", f"{self._stopped.popleft()} stopped the robot")
+        lost = self._leases.expire(now_s)
+        if lost is not None:
+            self._lost(lost, "ran out")
 
     def gone(self, client: int) -> None:
         """A client is no more: his lease ends, unless his session has a newer connection."""

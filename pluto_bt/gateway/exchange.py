@@ -9,9 +9,10 @@ from pluto_bt.gateway.desk import Desk
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
+from pluto_bt.gateway.requests import Get, Log, ShowModules, ShowTree
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Stamped, Up, Watch, Welcome, pack_value
 
-REQUESTS_A_STEP = 256
+REQUESTS_A_STEP = 64
 QUEUE = 16 * 1024
 HEARTBEAT_S = 0.25
 _EVENTS = "events"
@@ -25,6 +26,7 @@ class Exchange:
         self._port = port
         self._send = send
         self._desk = Desk(port, send)
+        self._inbox: deque[tuple[Up, int]] = deque()  # the one thing that both threads touch
         self._queue: deque[tuple[Up, int]] = deque()
         self._watched: tuple[str, ...] = ()
         self._sent_seq: dict[str, int] = {}
@@ -34,26 +36,32 @@ class Exchange:
     def welcome(self, token: str, limits: Limits, first_client: int) -> Welcome:
         """The first frame for a gateway; what it is sent begins anew."""
         self._queue.clear()
+        self._inbox.clear()
         self._watched = ()
         self._sent_seq.clear()
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
-        return Welcome(self._port.name, "", tuple(self._port.topics()), token, limits, first_client)
+        return Welcome(self._port.name, self._port.now_s(), tuple(self._port.topics()), token, limits, first_client)
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""
         if isinstance(frame, Ask):
             if self._desk.urgent(frame):
                 return
-            if len(self._queue) > QUEUE:
+            if len(self._inbox) > QUEUE:
                 text = "the executive does not answer; a stop is still obeyed"
                 self._send(Answer(frame.client, "direct", Error(id=frame.request.id, code="busy", text=text)))
                 return
-        self._queue.append((frame, self._desk.stops))
+        self._inbox.append((frame, self._desk.stops))
 
-    def step(self, now_s: float, *, has_room: bool = True) -> None:
-        """Answer what came, go on with runs and leases, and send what changed if the carrier has room."""
+    def step(self, now_s: float, has_room: Callable[[], bool] = lambda: True) -> None:
+        """Send what changed, answer some of what came, both as long as the carrier has room; then look after leases and runs."""
+        if has_room():
+            self._publish(now_s)
+        self._take_in()
         for _ in range(min(len(self._queue), REQUESTS_A_STEP)):
+            if not has_room():  # answers that nobody takes must not pile up here
+                break
             frame, stops = self._queue.popleft()
             if isinstance(frame, Ask):
                 self._desk.handle(frame, stops, now_s)
@@ -62,12 +70,22 @@ class Exchange:
             elif isinstance(frame, Watch):
                 self._watch(frame.topics)
         self._desk.step(now_s)
-        if has_room:
-            self._publish(now_s)
+
+    def _take_in(self) -> None:
+        """Line up what the carrier's thread brought, without the inquiries of clients who are gone: nobody hears the answers."""
+        gone = set()
+        for _ in range(min(len(self._inbox), QUEUE - len(self._queue))):
+            item = self._inbox.popleft()
+            self._queue.append(item)
+            if isinstance(item[0], Gone):
+                gone.add(item[0].client)
+        if gone:
+            self._queue = deque(item for item in self._queue if not _is_inquiry_of(gone, item[0]))
 
     def gateway_lost(self) -> None:
         """The gateway died."""
         self._queue.clear()
+        self._inbox.clear()
         self._watched = ()
         self._desk.gateway_lost()
 
@@ -88,3 +106,7 @@ class Exchange:
         if values or events or now_s - self._batch_s >= HEARTBEAT_S:
             self._batch_s = now_s
             self._send(Batch(now_s, tuple(values), events))
+
+
+def _is_inquiry_of(clients: set[int], frame: Up) -> bool:
+    return isinstance(frame, Ask) and frame.client in clients and isinstance(frame.request, Get | ShowTree | ShowModules | Log)

@@ -22,9 +22,10 @@ class Hub:
     Args:
         welcome: what the executive said first.
         send: takes a frame for the executive; never blocks.
+        now_s: our own clock (any zero) at the welcome.
     """
 
-    def __init__(self, welcome: Welcome, send: Callable[[Up], None]) -> None:
+    def __init__(self, welcome: Welcome, send: Callable[[Up], None], now_s: float) -> None:
         self.limits: Limits = welcome.limits
         self.robot = welcome.robot
         self.token = welcome.token
@@ -35,7 +36,7 @@ class Hub:
         self._next_client = welcome.first_client
         self._newest: dict[str, Newest] = {}
         self._watched: tuple[str, ...] = ()
-        self._run_minus_ours_s = 0.0
+        self._run_minus_ours_s = welcome.now_s - now_s
 
     # clients -----------------------------------------------------------------------------------------------------
     def open(self, now_s: float) -> Session:

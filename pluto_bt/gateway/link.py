@@ -15,7 +15,7 @@ from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.wire import Down, Farewell
 
 CLIENTS_A_PROCESS = 1 << 32
-BACKLOG_BYTES = 1 << 20
+BACKLOG_BYTES = 256 * 1024
 BACK_OFF_S = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)
 STEADY_S = 30.0
 _PROGRAM = "from pluto_bt.gateway.process import main; main()"
@@ -70,8 +70,7 @@ class GatewayLink:
         if self._courier is None and self._died_s is not None and now_s >= self._died_s + self._back_off_s():
             self.restarts += 1
             self._spawn(now_s)
-        courier = self._courier
-        self._exchange.step(now_s, has_room=courier is not None and courier.waiting_bytes < BACKLOG_BYTES)
+        self._exchange.step(now_s, self._has_room)
 
     def stop(self) -> None:
         """Tell the clients, end the process, free the port."""
@@ -118,6 +117,10 @@ class GatewayLink:
 
     def _back_off_s(self) -> float:
         return BACK_OFF_S[min(self._deaths, len(BACK_OFF_S)) - 1]
+
+    def _has_room(self) -> bool:
+        courier = self._courier
+        return courier is not None and courier.waiting_bytes < BACKLOG_BYTES
 
     def _send(self, frame: Down) -> None:
         courier = self._courier

@@ -38,8 +38,8 @@ class LocalGateway:
     def __init__(self, port: RobotPort, limits: Limits | None = None, token: str = "") -> None:
         self._down: deque[Down] = deque()
         self._exchange = Exchange(port, self._down.append)
-        self.hub = Hub(self._exchange.welcome(token, limits or Limits(), 1), self._exchange.receive)
         self.now_s = port.now_s()
+        self.hub = Hub(self._exchange.welcome(token, limits or Limits(), 1), self._exchange.receive, self.now_s)
 
     def start(self, now_s: float) -> None:
         """Nothing to take."""

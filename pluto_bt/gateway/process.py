@@ -35,7 +35,7 @@ class ExecutiveProtocol(asyncio.Protocol):
         """Frames of the executive."""
         for frame in self._frames.feed(data):
             if isinstance(frame, Welcome):
-                self._server = Server(Hub(frame, self._send))
+                self._server = Server(Hub(frame, self._send, self._loop.time()))
                 self._starting = self._loop.create_task(self._server.listen(self._listener))
             elif self._server is not None and isinstance(frame, Answer | Batch):
                 self._server.flush(self._server.hub.receive(frame, self._loop.time()))

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+
+from lxml import etree
+
 from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.replies import Error, encode
 
+_A_STOP = re.compile(rb"<(e?stop)[\s/>]")
+_LONGEST_STOP = len(b"<estop")
 STOPS = frozenset({"stop", "estop"})
 """Messages that are heard from anyone, at any time, at any rate."""
 
@@ -23,22 +30,41 @@ class Connection:
         self._out = bytearray()
         self._tokens = self._limits.messages_per_s
         self._refilled_s: float | None = None
+        self._too_fast = False
+        self._seen = b""  # of a flood: an end that may be the beginning of a stop
         self.closing = False
 
-    def feed(self, data: bytes, now_s: float) -> list[Message]:
-        """The messages that `data` completes. A fault ends the stream: the error stands in `to_send` and `closing` is true.
+    def feed(self, data: bytes, now_s: float) -> Iterator[Message]:
+        """The messages that `data` completes, one by one, so that the replies to them stand before the error that may follow.
 
-        A client that is too fast is closed, but a stop behind its flood is still heard.
+        A fault ends the stream: the error stands in `to_send` and `closing` is true. A client that is too fast is closed, but a
+        stop behind its flood is still heard. The iterator must be used up.
         """
-        messages: list[Message] = []
+        if self._too_fast:
+            yield from self._stops_in(data)
+            return
         try:
             for message in self._framer.feed(data) if self._framer else ():
                 if message.element.tag in STOPS or (not self.closing and self._may_pass(message, now_s)):
-                    messages.append(message)
+                    yield message
+                elif self.closing:
+                    self._framer = None
+                    yield from self._stops_in(data)
+                    break
         except FramingError as error:
             self._framer = None
             self.fail(error.code, error.text, line=error.line, column=error.column)
-        return messages
+
+    def _stops_in(self, data: bytes) -> Iterator[Message]:
+        """The stops in a flood, found without a parser: it costs nearly nothing, and a stop too many is on the safe side."""
+        if not self._too_fast:
+            return
+        seen = self._seen + data
+        for found in _A_STOP.finditer(seen):
+            tag = found[1].decode("ascii")
+            yield Message(etree.Element(tag), 0, 0, b"<" + found[1] + b"/>")
+        last = seen.rfind(b"<")
+        self._seen = seen[last:] if last >= len(seen) - _LONGEST_STOP and not _A_STOP.match(seen, last) else b""
 
     def _may_pass(self, message: Message, now_s: float) -> bool:
         """Take one token; without one the client is closed with `rate-limit`."""
@@ -47,6 +73,7 @@ class Connection:
             self._tokens = min(rate, self._tokens + (now_s - self._refilled_s) * rate)
         self._refilled_s = now_s
         if self._tokens < 1.0:
+            self._too_fast = True
             self.fail("rate-limit", f"expected at most {rate:g} messages a second", line=message.line, column=message.column)
             return False
         self._tokens -= 1.0

@@ -37,7 +37,7 @@ def value_line(topic: str, seq: int, stamp_s: float, age_s: float, body: str, *,
 
 def fields_of(kind: type[Message]) -> tuple[tuple[str, str, str], ...]:
     """Name on the wire, type and unit of every field, for `describe`."""
-    names = _WIRE_NAMES.get(kind, {})
+    names = _WIRE_NAMES.get(kind, {}) | _ROW_NAMES
     hints = get_type_hints(kind)
     fields = [name for name in kind.__struct_fields__ if name != "stamp_s"]
     return tuple((names.get(name, name), _type_name(hints[name]), _unit(name)) for name in fields if not (kind is LaserScan and name == "count"))
@@ -47,8 +47,8 @@ def _field(name: str, value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"<{name}>{numbers(value.tolist())}</{name}>"
     if isinstance(value, tuple):
-        if value and isinstance(value[0], msgspec.Struct):
-            return "".join(_row(_ROW_NAMES.get(name, name), item) for item in value)
+        if name in _ROW_NAMES:
+            return "".join(_row(_ROW_NAMES[name], item) for item in value)
         return f"<{name}>{numbers(value)}</{name}>"
     return f"<{name}>{escape(scalar(value)) if isinstance(value, str) else scalar(value)}</{name}>"
 

@@ -47,7 +47,7 @@ class Welcome(Frame, frozen=True):
     """Down, first: what the gateway must know."""
 
     robot: str
-    run: str
+    now_s: float
     topics: tuple[str, ...]
     token: str
     limits: Limits

@@ -14,6 +14,8 @@ from pluto_bt.source import Faults, Place, XmlElement, did_you_mean
 
 W = TypeVar("W", bound=str)
 MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the rounding
+MAX_BAD_POINTS = 20  # told of one element
+MAX_STRANGERS = 100
 NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d{1,3})?")
 _WORD = re.compile(r"\S++")
 
@@ -42,11 +44,11 @@ class Fields:
                 expected = f"one of: {', '.join(known)}" if known else "no attributes"
                 what = f'unknown attribute "{name}" of <{tag}>'
                 self.fault(attribute.place, "unknown-attribute", what, expected=expected, found=name, mend=did_you_mean(name, known))
-        for child in self.element.children:
-            if child.tag not in children:
-                expected = f"one of: {', '.join(children)}" if children else "no elements"
-                what = f"unknown element <{child.tag}> in <{tag}>"
-                self.fault(child.place, "unknown-element", what, expected=expected, found=f"<{child.tag}>", mend=did_you_mean(child.tag, children))
+        strangers = [child for child in self.element.children if child.tag not in children]
+        for child in strangers[:MAX_STRANGERS]:
+            expected = f"one of: {', '.join(children)}" if children else "no elements"
+            what = f"unknown element <{child.tag}> in <{tag}>"
+            self.fault(child.place, "unknown-element", what, expected=expected, found=f"<{child.tag}>", mend=did_you_mean(child.tag, children))
         if not has_text and self.element.text.strip():
             found = self.element.text.split(None, 1)[0]
             self.fault(self.element.text_place, "unexpected-text", f"<{tag}> has no text", expected="attributes only", found=found)
@@ -118,14 +120,16 @@ class Fields:
 
     def points(self, least: int) -> Points | None:
         """The points `x,y x,y …` that are the element's text; (n, 2) metres, read-only, or None and faults."""
-        words = list(_WORD.finditer(self.element.text))
         numbers: list[tuple[float, float]] = []
         bad = 0
-        for word in words:
+        for word in _WORD.finditer(self.element.text):
             point = _point(word.group())
             if point is not None:
                 numbers.append(point)
-            elif (bad := bad + 1) <= 20:
+            else:
+                bad += 1
+                if bad > MAX_BAD_POINTS:
+                    break
                 mend = "no blank before or after the comma" if word.group().strip(",") != word.group() or "," not in word.group() else ""
                 expected = f"x,y in metres, at most {MAX_METRES:g}"
                 self.fault(self.element.place_at(word.start()), "bad-point", "this is no point", expected=expected, found=word.group(), mend=mend)

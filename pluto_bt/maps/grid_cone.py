@@ -35,11 +35,7 @@ def grid_cone(
     low, high = math.tan(max(middle - half_angle, -STEEPEST_RAD)), math.tan(min(middle + half_angle, STEEPEST_RAD))
     way = 1 if axis_along > 0.0 else -1
     best = reach
-    line = math.floor(min(max(along, -1.0), lines + 0.0))
-    if line < 0 and way > 0:
-        line = 0
-    elif line >= lines and way < 0:
-        line = lines - 1
+    line = math.floor(max(along, 0.0) if way > 0 else min(along, lines - 1.0))
     while 0 <= line < lines:
         near, far = (line - along, line + 1 - along) if way > 0 else (along - line - 1, along - line)
         near = max(near, 0.0)

@@ -51,7 +51,9 @@ def crossed(t_line: float, t: float, ties: bool) -> bool:
 
 @inline_kernel
 def grid_entry(rows: int, columns: int, x: float, y: float, dx: float, dy: float, per_x: float, per_y: float) -> tuple[float, int, int]:
-    """When, and into which cell, a ray that begins outside enters the grid; time `FAR` if it does not."""
+    """When, and in which cell, a ray comes into the grid: at 0 if it begins inside; time `FAR` if it never does."""
+    if 0.0 <= x < columns and 0.0 <= y < rows:
+        return 0.0, int(x), int(y)
     tx, ty = entry_time(x, columns, per_x), entry_time(y, rows, per_y)
     t = max(tx, ty)
     if t >= FAR or t < 0.0:
@@ -91,10 +93,7 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
     rows, columns = free.shape[1], free.shape[2]
     per_x = 1.0 / dx if abs(dx) > NEVER else FAR
     per_y = 1.0 / dy if abs(dy) > NEVER else FAR
-    if 0.0 <= x < columns and 0.0 <= y < rows:
-        t, ix, iy = 0.0, int(x), int(y)
-    else:
-        t, ix, iy = grid_entry(rows, columns, x, y, dx, dy, per_x, per_y)
+    t, ix, iy = grid_entry(rows, columns, x, y, dx, dy, per_x, per_y)
     if t >= reach:
         return reach
     right, up = per_x > 0.0, per_y > 0.0
@@ -102,8 +101,8 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
     if free[way, iy, ix] == INSIDE:
         return t
     # the edge of a square of side s lies at line ix + s for a ray to the right, at ix + 1 - s for one to the left
-    way_x, way_y = (1 if right else -1), (1 if up else -1)
-    near_x, near_y = (0 if right else 1), (0 if up else 1)
+    way_x, near_x = (1, 0) if right else (-1, 1)
+    way_y, near_y = (1, 0) if up else (-1, 1)
     while True:
         side = int(free[way, iy, ix])
         if side == 0:

@@ -7,6 +7,8 @@ import math
 from pluto_bt.maps.kernel import inline_kernel
 from pluto_bt.maps.shape_rays import disc_range
 
+SHARED = 1e-12  # a segment through the apex is clipped to one point, up to rounding
+
 
 @inline_kernel
 def segment_in_sector(x1: float, y1: float, x2: float, y2: float, cos: float, sin: float) -> float:
@@ -24,7 +26,7 @@ def segment_in_sector(x1: float, y1: float, x2: float, y2: float, cos: float, si
         start = max(start, right1 / (right1 - right2))
     elif right2 > 0.0:
         end = min(end, right1 / (right1 - right2))
-    if start > end:
+    if start > end + SHARED:
         return math.inf
     ex, ey = x2 - x1, y2 - y1
     length2 = ex * ex + ey * ey

@@ -9,6 +9,8 @@ from pluto_bt.source import Faults, Place, did_you_mean
 
 Group = Literal["obstacle", "region", "line", "goal", "marker"]  # a goal and an area may both be called "kitchen"
 
+MOST_COMPARED = 500  # names that are looked through for a similar one
+
 
 class Ids:
     """The names given so far, by group."""
@@ -40,7 +42,7 @@ class Ids:
 
     def check(self, groups: tuple[Group, ...], name: str, place: Place, what: str) -> None:
         """A fault if nothing in these groups is called `name`."""
-        known = [known for group in groups for known in self._places[group]]
-        if name and name not in known:
+        if name and not any(name in self._places[group] for group in groups):
+            known = [known for group in groups for known in self._places[group]][:MOST_COMPARED]
             expected = f"one of: {', '.join(known[:20])}{', …' if len(known) > 20 else ''}" if known else "the world has none"
             self._faults.error(place, "unknown-id", f'there is no {what} "{name}"', expected=expected, found=name, mend=did_you_mean(name, known))

@@ -12,11 +12,13 @@ MAX_TIME_S = 1e9
 ACTIONS = ("remove", "place", "fault", "set")
 
 
-def read_script(element: XmlElement, ids: Ids, faults: Faults) -> list[At | When]:
-    """The entries of one `<script>`; every id in it must be known to `ids` by now."""
+def read_script(element: XmlElement, ids: Ids, faults: Faults, enough_faults: int) -> list[At | When]:
+    """The entries of one `<script>`; every id in it must be known to `ids` by now. Ends once there are `enough_faults`."""
     fields = Fields(element, faults)
     entries: list[At | When] = []
     for child in element.children:
+        if len(faults) >= enough_faults:
+            break
         entry = Fields(child, faults)
         if child.tag == "at":
             t_s = entry.number("t", None, 0.0, MAX_TIME_S)

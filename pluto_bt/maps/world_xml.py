@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -12,8 +11,9 @@ import numpy as np
 
 from pluto_bt.maps import polygons
 from pluto_bt.maps.fields import Fields
-from pluto_bt.maps.world import Actor, Area, At, Goal, Line, Marker, Points, RobotStart, Shadow, Shape, Terrain, When, World
+from pluto_bt.maps.world import Actor, Area, Goal, Line, Marker, Points, RobotStart, Shadow, Shape, Terrain, World
 from pluto_bt.maps.world_ids import Group, Ids
+from pluto_bt.maps.world_parts import WorldParts
 from pluto_bt.maps.world_script import read_script
 from pluto_bt.source import Faults, XmlElement
 
@@ -24,27 +24,10 @@ LINE_KINDS: tuple[Literal["forbidden", "restrictive"], ...] = ("forbidden", "res
 SHADOWED: tuple[Literal["gps", "marker", "compass"], ...] = ("gps", "marker", "compass")
 MAX_SEED = 2**63 - 1
 MAX_POINTS = 200_000  # in one file
+ENOUGH_FAULTS = 200  # a file with more is not a world that someone mistyped
 MAX_SPEED_MPS = 100.0
 
 ReadMap = Callable[[Path, str, Faults], World | None]
-
-
-@dataclass
-class _Found:
-    """What was read so far."""
-
-    shapes: list[Shape] = field(default_factory=list)
-    areas: list[Area] = field(default_factory=list)
-    lines: list[Line] = field(default_factory=list)
-    goals: list[Goal] = field(default_factory=list)
-    markers: list[Marker] = field(default_factory=list)
-    shadows: list[Shadow] = field(default_factory=list)
-    actors: list[Actor] = field(default_factory=list)
-    terrains: list[Terrain] = field(default_factory=list)
-    home: Goal | None = None
-    robot: RobotStart | None = None
-    map: World | None = None
-    script: list[At | When] = field(default_factory=list)
 
 
 def read_world_xml(root: XmlElement, path: Path, shown_name: str, faults: Faults, read_map: ReadMap) -> World | None:
@@ -65,7 +48,7 @@ class _WorldReading:
 
     def __init__(self, path: Path, shown_name: str, faults: Faults, read_map: ReadMap) -> None:
         self._path, self._shown, self._faults, self._read_map = path, shown_name, faults, read_map
-        self._ids, self._found = Ids(faults), _Found()
+        self._ids, self._found = Ids(faults), WorldParts()
         self._once: dict[str, XmlElement] = {}
         self._readers: dict[str, Callable[[Fields], None]] = {
             "map": self._map, "wall": self._wall, "polygon": self._polygon, "hole": self._polygon, "circle": self._circle, "area": self._area,
@@ -83,23 +66,14 @@ class _WorldReading:
             fields.fault(root.place, "too-many-nodes", "the world has too many points", expected=f"at most {MAX_POINTS}", found="more")
             return None
         name, seed = fields.text("name", Path(self._shown).stem), fields.whole("seed", 0, MAX_SEED)
+        fields.done((*self._readers, "script"))
         for child in sorted(root.children, key=lambda child: child.tag != "map"):  # what a map brings along has its names first
-            if child.tag in self._readers:
+            if child.tag in self._readers and len(self._faults) < ENOUGH_FAULTS:
                 self._readers[child.tag](Fields(child, self._faults))
         for child in root.children:  # a script may stand before what it names
             if child.tag == "script":
-                self._found.script += read_script(child, self._ids, self._faults)
-        fields.done((*self._readers, "script"))
-        return self._world(name, seed)
-
-    def _world(self, name: str, seed: int) -> World:
-        found, base = self._found, self._found.map or World(name="")
-        return World(
-            name=name, file=self._shown, seed=seed, grid=base.grid, shapes=(*base.shapes, *found.shapes), areas=(*base.areas, *found.areas),
-            lines=(*base.lines, *found.lines), goals=(*base.goals, *found.goals), home=found.home or base.home, markers=tuple(found.markers),
-            shadows=tuple(found.shadows), actors=tuple(found.actors), terrains=tuple(found.terrains), robot=found.robot or base.robot,
-            script=tuple(found.script),
-        )  # fmt: skip
+                self._found.script += read_script(child, self._ids, self._faults, ENOUGH_FAULTS)
+        return self._found.world(name, self._shown, seed)
 
     # ------------------------------------------------------------------ one of a kind
 

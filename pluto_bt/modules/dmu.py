@@ -40,6 +40,7 @@ class Dmu(Relay[InertialRecord]):
         self._command = context.board.reader("ATRV2/Drive/Command")
         self.bias = GyroBias(p.bias_samples, math.radians(p.max_bias_spread_dps))
         self.heading = InertialHeading(p.filter_s)
+        self._has_told = False
         self._still_turn_radps = math.radians(p.still_turn_rate_dps)
 
     def step(self, now_s: float) -> None:
@@ -70,9 +71,10 @@ class Dmu(Relay[InertialRecord]):
         if news is BiasNews.KNOWN:
             dps = math.degrees(self.bias.bias_radps)
             self._say("info", "gyro-bias-known", "dmu", f"gyro bias {dps:.4f} deg/s from {self.bias.taken} samples at rest")
-        elif news is BiasNews.MOVED:
-            text = "the robot moved while the gyro's bias was measured: the wheels give the heading; starting again"
-            self._say("warning", "gyro-bias-refused", "dmu", text)
+        elif news is BiasNews.MOVED and (not self._has_told or self.bias.thrown_away >= self._parameters.bias_samples // 4):
+            self._has_told = True  # later only when much was lost: a robot that stops and goes would say it all the time
+            text = "the robot moved while the gyro's bias was measured: until it stands still the wheels stand in; starting again"
+            self._say("info", "gyro-bias-refused", "dmu", text)
         elif news is BiasNews.UNSTEADY:
             spread = math.degrees(self.bias.spread_radps)
             self._say("warning", "gyro-bias-refused", "dmu", f"the gyro scatters by {spread:.2f} deg/s, too much for a robot at rest; starting again")

@@ -87,7 +87,7 @@ class Executive:
 
 def node_states(mission: Mission) -> list[NodeState]:
     """The nodes of a mission as the blackboard shows them."""
-    return [NodeState(node.path, node.type, node.name, node.depth, node.status, node.feedback, node.since_s) for node in mission.node_states()]
+    return [NodeState(node.path, node.kind, node.name, node.depth, node.status, node.feedback, node.since_s) for node in mission.node_states()]
 
 
 def module_state(part: Part) -> ModuleState:

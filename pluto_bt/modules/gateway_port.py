@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
 from pluto_bt.commands.files import SHIPPED, package_root
-from pluto_bt.gateway.port import Newest, Refused, RunState
+from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
-from pluto_bt.system import System
 from pluto_bt.trees.executive import PAUSED, RUNNING, Activity
 from pluto_bt.trees import Mission, MissionError
+
+if TYPE_CHECKING:
+    from pluto_bt.system import System
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}
@@ -21,9 +25,9 @@ OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 class GatewayPort:
     """Implements `RobotPort` over a `System`."""
 
-    def __init__(self, system: System, load: Callable[[str], Mission]) -> None:
-        self._system = system
-        self._load = load
+    def __init__(self, context: Context) -> None:
+        self._system: System = context.extras["system"]
+        self._load_text: Callable[[str], Mission] = context.extras["load"]
         self._loaded: Mission | None = None
         self._errands: dict[str, Activity] = {}
         self._estop: str | None = None
@@ -75,22 +79,22 @@ class GatewayPort:
         """Give a command to a link of the chain or to the wrist."""
         self._refuse_if_latched()
         if self._mission_runs():
-            raise Refused("wrong-state", "a mission runs; pause it first")
+            raise RefusedError("wrong-state", "a mission runs; pause it first")
         if self._system.inboxes[LINK_OF_TARGET[target]].post(source, command):
-            raise Refused("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
+            raise RefusedError("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
 
     def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
         """Start one node as an errand."""
         self._refuse_if_latched()
         if self._mission_runs():
-            raise Refused("wrong-state", "a mission runs; pause it first")
+            raise RefusedError("wrong-state", "a mission runs; pause it first")
         attributes = "".join(f" {name}={quoteattr(value)}" for name, value in ports.items())
         try:
             mission = self._load(f'<root BTCPP_format="4"><BehaviorTree ID="run"><{node}{attributes}/></BehaviorTree></root>')
         except MissionError as error:
             fault = error.faults[0]
             code = "unknown-node" if fault.code == "unknown-node" else "bad-value"
-            raise Refused(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
+            raise RefusedError(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
         errand = self._system.executive.core.start_errand(mission)
         self._errands[str(errand.number)] = errand
         return str(errand.number)
@@ -125,9 +129,9 @@ class GatewayPort:
         elif op == "start":
             self._refuse_if_latched()
             if self._loaded is None:
-                raise Refused("wrong-state", 'no mission is loaded; send <mission op="load" name="…"/> first')
+                raise RefusedError("wrong-state", 'no mission is loaded; send <mission op="load" name="…"/> first')
             if self._mission_runs():
-                raise Refused("wrong-state", "a mission runs; abort it first")
+                raise RefusedError("wrong-state", "a mission runs; abort it first")
             core.start(self._loaded)
         elif op == "abort":
             core.abort("operator")
@@ -135,10 +139,10 @@ class GatewayPort:
             if op == "resume":
                 self._refuse_if_latched()
             if self.mission_state().state != OPS_OF_STATE[op]:
-                raise Refused("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
+                raise RefusedError("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
             core.pause("operator") if op == "pause" else core.resume()
         else:
-            raise Refused("invalid", f'mission op="{op}" is not offered')
+            raise RefusedError("invalid", f'mission op="{op}" is not offered')
 
     def tree_text(self, format: str) -> str:
         """The tree drawn."""
@@ -156,7 +160,7 @@ class GatewayPort:
         try:
             self._system.order_module(name, op == "start")
         except KeyError:
-            raise Refused("unknown-module", f'no module "{name}"') from None
+            raise RefusedError("unknown-module", f'no module "{name}"') from None
 
     def _mission_runs(self) -> bool:
         mission = self._system.executive.core.mission
@@ -164,12 +168,17 @@ class GatewayPort:
 
     def _refuse_if_latched(self) -> None:
         if self._estop is not None:
-            raise Refused("estopped", f"emergency stop ({self._estop}); release it first")
+            raise RefusedError("estopped", f"emergency stop ({self._estop}); release it first")
+
+    def _load(self, text: str) -> Mission:
+        mission = self._load_text(text)
+        mission.attach(self._system.robot)
+        return mission
 
     def _load_named(self, name: str, text: str) -> Mission:
         if not text and name not in self.mission_names():
-            raise Refused("bad-mission", f'no mission "{name}" is shipped; send it inline')
+            raise RefusedError("bad-mission", f'no mission "{name}" is shipped; send it inline')
         try:
             return self._load(text or str(package_root() / SHIPPED["mission"][0] / name))
         except MissionError as error:
-            raise Refused("bad-mission", str(error)) from None
+            raise RefusedError("bad-mission", str(error)) from None

@@ -16,7 +16,7 @@ import msgspec
 from msgspec import Meta
 
 from estimation.covariance import StepNoise, as_nine, from_nine, moved
-from estimation.se2 import compose, inverse
+from estimation.se2 import compose, inverse, wrap_angle
 from estimation.track import Track
 from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import Pose, ScanTiming
@@ -92,9 +92,9 @@ class Local:
         now = self.track.now
         phi, psi = now.tilt
         x, y, theta = now.pose_odom
-        self._dead_reckoning.put(Pose(now.stamp_s, (x, y, 0.0, theta, phi, psi), as_nine(now.covariance_odom)), now_s)
+        self._dead_reckoning.put(Pose(now.stamp_s, (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_odom)), now_s)
         x, y, theta = now.pose_map
-        self._pose.put(Pose(now.stamp_s, (x, y, 0.0, theta, phi, psi), as_nine(now.covariance_map), self._box.set_by), now_s)
+        self._pose.put(Pose(now.stamp_s, (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_map), self._box.set_by), now_s)
 
     def _accept(self, source: str, post: Pose, now_s: float) -> None:
         """Adjust the track by a post. The setter is checked again here: it may have changed since the post was left."""

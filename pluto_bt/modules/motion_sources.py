@@ -71,8 +71,8 @@ class SpeedWay:
 class MotionSources:
     """Joins the way and the heading that this platform has.
 
-    The heading is the gyro's (`dmu/state`, once its bias is known), an absolute sensor's (`imu/state`), or the wheels' where there
-    is neither or it is stale.
+    The heading is the gyro's (`dmu/state`; until its bias is known the wheels teach it), an absolute sensor's (`imu/state`), or the
+    wheels' where there is neither or it is stale.
     """
 
     def __init__(self, context: Context, noise: StepNoise) -> None:
@@ -84,7 +84,7 @@ class MotionSources:
         if devices.imu is not None and devices.imu.absolute:
             self._heading, topic = AbsoluteHeading(context.start_pose[2]), "imu/state"
         else:
-            self._heading, topic = GyroHeading(), "dmu/state"
+            self._heading, topic = GyroHeading(teaches=not is_car), "dmu/state"
         self._sensor = context.board.reader(topic)
         self._stale_after_s = STALE_AFTER_S[topic]
 
@@ -94,19 +94,20 @@ class MotionSources:
         if way is None:
             return None
         stamp_s, dt_s, distance_m, wheel_turn_rad = way
-        theta_rad, tilt = self._theta_at(stamp_s, now_s)
-        turn_rad, is_measured = self._heading.turn(dt_s, wheel_turn_rad, theta_rad)
+        theta_rad, bias_known, tilt = self._theta_at(stamp_s, now_s)
+        turn_rad, is_measured = self._heading.turn(dt_s, wheel_turn_rad, theta_rad, bias_known)
         noise = self._noise
         turn_var = noise.gyro_turn_var_rad2(dt_s) if is_measured else noise.wheel_turn_var_rad2(distance_m, wheel_turn_rad)
         return Step(stamp_s, arc(distance_m, turn_rad), noise.distance_var_m2(distance_m), turn_var, tilt)
 
-    def _theta_at(self, stamp_s: float, now_s: float) -> tuple[float | None, Tilt]:
-        """The sensor's heading, carried from its own (older) stamp to `stamp_s` by its turn rate; None if it cannot be used."""
+    def _theta_at(self, stamp_s: float, now_s: float) -> tuple[float | None, bool, Tilt]:
+        """(heading, whether its bias is known, tilt) of the sensor; None if it is missing or too old.
+
+        The heading is carried from its own, older stamp to `stamp_s` by its turn rate.
+        """
         sample = self._sensor()
         if sample is None or not isinstance(sample.value, ImuState) or now_s - sample.value.stamp_s > self._stale_after_s:
-            return None, LEVEL
+            return None, False, LEVEL
         state = sample.value
-        tilt = (state.phi_rad, state.psi_rad)
-        if not state.bias_known:
-            return None, tilt
-        return state.theta_rad + state.turn_rates_radps[2] * (stamp_s - state.stamp_s), tilt
+        theta_rad = state.theta_rad + state.turn_rates_radps[2] * (stamp_s - state.stamp_s)
+        return theta_rad, state.bias_known, (state.phi_rad, state.psi_rad)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import sys
 import threading
 from collections.abc import Sequence
-from types import FrameType
 
 from pluto_bt.runtime.clock import NS, MonotonicClock
 from pluto_bt.runtime.supervision import Part, Waker
@@ -101,10 +99,6 @@ class Threads:
             if part is not None and (self._clock.now_ns() - group.busy_since_ns) / NS / self._clock.speed > limit_s:
                 return part
         return None
-
-    def frame_of(self, part: Part) -> FrameType | None:
-        """Where the thread of a part is at work now."""
-        return sys._current_frames().get(self._groups[part.module.group].ident or 0)
 
     def stop(self, wait_s: float = 1.0) -> None:
         """End the threads. A hung thread is left behind (it is a daemon)."""

@@ -18,17 +18,6 @@ class Hung(BaseException):
     """Raised in a thread that made no progress. Not an Exception: a leaf's `except Exception` must not swallow it."""
 
 
-def innermost(error: BaseException) -> FrameType | None:
-    """The frame in which `error` was raised, handlers of signals left out."""
-    trace = error.__traceback__
-    frame: FrameType | None = None
-    while trace is not None:
-        if trace.tb_frame.f_code is not Watchdog._raise.__code__:
-            frame = trace.tb_frame
-        trace = trace.tb_next
-    return frame
-
-
 class Watchdog:
     """Watches a counter that must move at least every `limit_s` seconds of the wall while armed."""
 

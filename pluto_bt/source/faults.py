@@ -105,6 +105,9 @@ class Faults:
     def __bool__(self) -> bool:
         return bool(self._faults)
 
+    def __len__(self) -> int:
+        return len(self._faults)
+
     @property
     def has_errors(self) -> bool:
         """True if at least one is more than a warning."""

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from pluto_bt.source.faults import Faults, Place
 from pluto_bt.source.text import MAX_BYTES, SourceText, read_text
+from pluto_bt.source.xml_entities import ENTITY, character, decoded
 from pluto_bt.source.xml_faults import NAME, XmlReport, XmlSyntaxError
 from pluto_bt.source.xml_tree import XmlAttribute, XmlComment, XmlElement
 
@@ -26,8 +27,6 @@ _TAG = re.compile(NAME)
 _ATTRIBUTE = re.compile(rf"""\s*+(?:({NAME})\s*+=\s*+("[^"]*+"|'[^']*+')|/?>)""")
 _END_TAG = re.compile(rf"</\s*+({NAME})\s*+>")
 _WORD = re.compile(r"<!\w{0,20}")
-_ENTITY = re.compile(r"&(?:#([0-9]{1,7})|#x([0-9a-fA-F]{1,6})|(amp|lt|gt|quot|apos));")
-_ENTITIES = {"amp": "&", "lt": "<", "gt": ">", "quot": '"', "apos": "'"}
 
 
 def read_xml(
@@ -192,7 +191,7 @@ class _Scanner:
                 self._count_items(DUPLICATE_COST, start)
             value = quoted[1:-1]
             self._count_items(1 + value.count("&"), start)
-            attributes[name] = XmlAttribute(name, _decoded(value) if "&" in value else value, source, start, found.start(2) + 1)
+            attributes[name] = XmlAttribute(name, decoded(value) if "&" in value else value, source, start, found.start(2) + 1)
         raise self._report.bad_attribute(element, at)
 
     def _end_tag(self, at: int) -> int:
@@ -214,9 +213,9 @@ class _Scanner:
             return
         at = start
         if self._text.find("&", start, end) >= 0:
-            for entity in _ENTITY.finditer(self._text, start, end):  # each run between entities keeps its own place
+            for entity in ENTITY.finditer(self._text, start, end):  # each run between entities keeps its own place
                 self._add_text(self._text[at : entity.start()], at)
-                self._add_text(_character(entity), entity.start())
+                self._add_text(character(entity), entity.start())
                 at = entity.end()
         self._add_text(self._text[at:end], at)
 
@@ -242,17 +241,3 @@ class _Scanner:
         if self._items_left < 0:
             what, most = "the file has too many attributes, entities, comments and pieces of text", ITEMS_PER_ELEMENT * self._max_elements
             raise self._report.stop(at, "too-many-nodes", what, expected=f"at most {most}", found="more")
-
-
-def _decoded(raw: str) -> str:
-    """The five named and the numeric entities decoded; anything else that begins with `&` stays as it is."""
-    return _ENTITY.sub(_character, raw)
-
-
-def _character(entity: re.Match[str]) -> str:
-    decimal, hexadecimal, name = entity.groups()
-    if name:
-        return _ENTITIES[name]
-    code = int(decimal) if decimal else int(hexadecimal, 16)
-    is_character = 0 < code <= 0x10FFFF and not 0xD800 <= code <= 0xDFFF
-    return chr(code) if is_character else entity.group()

@@ -8,7 +8,7 @@
 `dump/` draws.
 """
 
-from pluto_bt.trees.engine.errors import MissionError, TickError
+from pluto_bt.trees.errors import MissionError, TickError
 from pluto_bt.trees.loader.load import check_mission, load_mission, plan_mission
 from pluto_bt.trees.mission import Mission
 

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
-from pluto_bt.trees.engine.errors import TickError
+from pluto_bt.trees.errors import TickError
 from pluto_bt.trees.mission import Mission
 
 IDLE, RUNNING, PAUSED, SUCCEEDED, FAILED, ABORTED = "idle", "running", "paused", "succeeded", "failed", "aborted"

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
-from types import FrameType
 from typing import Any
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.board_view import BoardView
-from pluto_bt.trees.controls import ReactiveSequence, Sequence, TryCatch
-from pluto_bt.trees.decorators import ForceFailure, Inverter
+from pluto_bt.trees.controls.reactive import ReactiveSequence
+from pluto_bt.trees.controls.sequence import Sequence
+from pluto_bt.trees.controls.try_catch import TryCatch
+from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.engine.errors import StepError, TickError
+from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import NodeState, Tracked
+
+
 
 
 class Mission:
@@ -74,10 +78,8 @@ class Mission:
             raise error
 
     def _tick_error(self, error: Exception) -> TickError:
-        try:
+        with contextlib.suppress(TickError):  # the first error is the one to tell
             self.halt()
-        except TickError:
-            pass  # the first error is the one to tell
         return self._told(error)
 
     def _told(self, error: Exception) -> TickError:
@@ -145,32 +147,31 @@ class Mission:
         return str(outputs.get("reason") or decider.node.feedback_message or decider.plan.name)
 
     def deciding_text(self) -> str:
-        """The sentence of the deciding leaf: its name and its feedback; "" if the root did not fail."""
+        """The same in words: which node it was and what it said; "" if the root did not fail."""
         decider = self.deciding_node()
-        return "" if decider is None else f"{decider.path}: {decider.node.feedback_message}".rstrip(": ")
-
-    def status_line(self) -> str:
-        """One letter a node, depth first: I, R, S, F, K (skipped). Cheap; equal lines mean that no status changed."""
-        skipped = self._skipped()
-        return "".join([tracked.letter(skipped) for tracked in self._tracked])
+        if decider is None:
+            return ""
+        said = decider.node.feedback_message
+        return f"{decider.path} ({decider.plan.type_name}) failed{': ' + said if said else ''}"
 
     def outputs(self) -> dict[str, str]:
-        """What the root's output ports gave, as text: for a mission that is a single leaf."""
-        return {name: text_of(value) for name, value in getattr(self.root, "last_outputs", {}).items()}
+        """What the root wrote to its output ports, as text; only a mission that is a single leaf has any."""
+        written: dict[str, Any] = getattr(self.root, "last_outputs", {})
+        return {name: text_of(value) for name, value in written.items()}
+
+    def current_leaf(self) -> str:
+        """The path of the leaf that was begun last: while a tick does not come back, the one that hangs. Any thread may ask."""
+        current = self._context.current
+        return next((tracked.path for tracked in self._tracked if tracked.node is current), "")
+
+    def status_line(self) -> str:
+        """One letter a node, depth first: its status (I R S F), or K if it was skipped in the last tick."""
+        skipped = self._skipped()
+        return "".join([tracked.letter(skipped) for tracked in self._tracked])
 
     def attach(self, robot: Any) -> None:
         """Join a robot that was not there yet when the mission was loaded."""
         self.blackboard.robot = robot
-
-    def node_in(self, frame: FrameType | None) -> str:
-        """The path of the node at work in a stack of frames (innermost first to be looked at), "" if there is none."""
-        paths = {id(tracked.node): tracked.path for tracked in self._tracked}
-        while frame is not None:
-            for value in (frame.f_locals.get("self"), frame.f_locals.get("leaf")):
-                if id(value) in paths:
-                    return paths[id(value)]
-            frame = frame.f_back
-        return ""
 
     def replace_step(self, name: str, step: Callable[[], Result] | None) -> bool:
         """Let `step` stand in for that of all leaves called `name` (by name, type or path), None = their own again. False if there is none.
@@ -179,9 +180,17 @@ class Mission:
         """
         found = [one for one in self._tracked if not one.node.children and name in (one.plan.name, one.plan.type_name, one.path)]
         for tracked in found:
-            own = self._own_steps.setdefault(id(tracked.node), tracked.node.step)
-            tracked.node.step = own if step is None else step
+            node = tracked.node
+            own = self._own_steps.setdefault(id(node), node.step)
+            node.step = own if step is None else self._begun(node, step)
         return bool(found)
+
+    def _begun(self, node: Any, step: Callable[[], Result]) -> Callable[[], Result]:
+        def begin() -> Result:
+            self._context.current = node
+            return step()
+
+        return begin
 
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""

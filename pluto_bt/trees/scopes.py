@@ -59,7 +59,7 @@ class TopicEntry(Entry):
         self.kind = None
 
     @property
-    def value(self) -> Any:  # type: ignore[override]
+    def value(self) -> Any:
         """The newest value, or EMPTY."""
         try:
             return self._topics.get(self._name)

@@ -13,10 +13,13 @@ LETTERS = {status: "K" if name == "SKIPPED" else name[0] for status, name in NAM
 
 @dataclass(frozen=True, slots=True)
 class NodeState:
-    """One line of the tree as others see it: `status` is IDLE, RUNNING, SUCCESS, FAILURE or SKIPPED (told in this very tick)."""
+    """One line of the tree as others see it: `status` is IDLE, RUNNING, SUCCESS, FAILURE or SKIPPED (told in this very tick).
+
+    `kind` is the type's name, such as Sequence or GoTo; `depth` counts from 1; `since_s` is mission time.
+    """
 
     path: str
-    type: str
+    kind: str
     name: str
     depth: int
     status: str

@@ -59,8 +59,6 @@ class Kind:
 
     def convert(self, value: Any) -> Any:
         """`value` as this kind; a text is parsed. Raises PortProblem."""
-        if type(value) is self.python:
-            return value
         try:
             return self.parse(value) if isinstance(value, str) and self.python is not str else self.cast(value)
         except ValueError as error:

@@ -24,9 +24,7 @@ class LaserSensor:
         self.period_ns = period_ns(figures.rate_hz)
         self.delay_s = figures.arrival_delay_s
         self._figures, self._around, self._body, self._wrist, self._ideal = figures, around, body, wrist, ideal
-        self._noise = RangeNoise(
-            noise, figures.noise_m, figures.resolution_m, 0.0, figures.max_range_m, figures.dropout_rate, figures.dazzle_rate
-        )
+        self._noise = RangeNoise(noise, figures.noise_m, figures.resolution_m, 0.0, figures.max_range_m, figures.dropout_rate, figures.dazzle_rate)
         field_rad = math.radians(figures.field_deg)
         self._angle_min_rad = -0.5 * field_rad
         self._angle_step_rad = field_rad / (figures.beams - 1)

@@ -23,9 +23,7 @@ POOR_M = 1.0
 class MarkerSensor:
     """The nearest marker in range, if the car is not in a shadow; the stamp is when the picture was taken."""
 
-    def __init__(
-        self, figures: platform.MarkerCamera, markers: tuple[Marker, ...], body: Body, ground: Ground, noise: Noise, ideal: bool
-    ) -> None:
+    def __init__(self, figures: platform.MarkerCamera, markers: tuple[Marker, ...], body: Body, ground: Ground, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self.delay_s = figures.delay_s
         self._figures, self._markers, self._body, self._ground, self._noise, self._ideal = figures, markers, body, ground, noise, ideal

@@ -22,9 +22,7 @@ SKID = Platform(
     name="skid",
     body=Body(kinematics="skid", outline_m=BOX, track_m=0.6),
     limits=LIMITS,
-    devices=Devices(
-        laser=Laser(x_m=0.4), wrist=Wrist(), bumpers=Bumpers(), sonar=Sonar(transducers=(Transducer(x_m=0.5, y_m=0, theta_deg=0),))
-    ),
+    devices=Devices(laser=Laser(x_m=0.4), wrist=Wrist(), bumpers=Bumpers(), sonar=Sonar(transducers=(Transducer(x_m=0.5, y_m=0, theta_deg=0),))),
 )
 CAR = Platform(
     name="car",

@@ -30,7 +30,7 @@ def test_trip2_closes_its_loop(make_car: Any, seed: int) -> None:
     mission = stage.load(TRIP2, ports={"max_loops": "4"})
     assert drive(stage, car, mission, lambda m: False) == "SUCCESS"
     assert mission.blackboard["loops"] == 4
-    assert 0.0 < car.box[0] and car.box[2] < 3.13 and 0.0 < car.box[1] and car.box[3] < 19.78
+    assert car.box[0] > 0.0 and car.box[2] < 3.13 and car.box[1] > 0.0 and car.box[3] < 19.78
     assert stage.robot.commands[-1].velocity == (0.0, 0.0)
 
 

@@ -77,6 +77,25 @@ def test_gyro_heading_falls_back_to_the_wheels_and_comes_back_without_a_jump() -
     assert heading.turn(0.02, 0.1, -1.9) == (pytest.approx(0.1), True)
 
 
+def test_while_the_bias_is_unknown_the_wheels_teach_it_on_straights() -> None:
+    """Wheels that are 10 % wrong in turns, a gyro with 0.01 rad/s of bias: the heading after straights and turns is right."""
+    heading, dt, bias, theta, total, true = GyroHeading(), 0.02, 0.01, 0.0, 0.0, 0.0
+    rates = [0.0] * 25 + [0.8] * 100 + [0.0] * 200 + [-0.5] * 150 + [0.001] * 100
+    for rate in rates:
+        true += rate * dt
+        theta += (rate + bias) * dt
+        wheels = rate * dt * (1.1 if abs(rate) > 0.1 else 1.0)
+        total += heading.turn(dt, wheels, theta, bias_known=False)[0]
+    assert total == pytest.approx(true, abs=1e-6)
+
+
+def test_without_a_straight_the_wheels_give_the_heading_and_the_car_has_none() -> None:
+    turning, car = GyroHeading(), GyroHeading(teaches=False)
+    for k in range(50):
+        assert turning.turn(0.02, 0.01, 0.03 * k, bias_known=False) == (0.01, False)
+        assert car.turn(0.02, 0.0, 0.03 * k, bias_known=False) == (0.0, False)
+
+
 def test_absolute_heading_follows_its_sensor_whatever_the_wheels_say() -> None:
     heading, offset, true = AbsoluteHeading(0.5), 2.0, 0.5
     for _ in range(50):

@@ -89,6 +89,17 @@ def test_a_robot_that_moves_during_the_bias_is_refused_and_said(make_rig: Any) -
     assert "moved" in rig.events[0][3]
 
 
+def test_stop_and_go_is_told_once_and_then_only_when_much_was_lost(make_rig: Any) -> None:
+    rig = make_rig()
+    dmu = Dmu(rig.context)
+    for k in range(1000):
+        still(rig, k, v=0.2 if k % 10 == 9 and not 300 < k < 600 else 0.0)
+        rig.devices["dmu"].records = [gyro(k, 0.01)]
+        dmu.step(k * 0.02)
+    assert rig.codes() == ["gyro-bias-refused"] * 2
+    assert rig.events[0][0] == "info"
+
+
 def test_without_a_word_from_the_wheels_nothing_passes_for_rest(make_rig: Any) -> None:
     rig = make_rig()
     dmu = Dmu(rig.context)

@@ -7,7 +7,7 @@ R S F and K (skipped). A tick is written as the answers of the leaves in order, 
 from __future__ import annotations
 
 import re
-from typing import Any
+from typing import Any, ClassVar
 
 from py_trees.common import Status
 from py_trees.ports import BehaviourWithPorts, PortInformation
@@ -21,8 +21,8 @@ ANSWERS = {"R": Status.RUNNING, "S": Status.SUCCESS, "F": Status.FAILURE, "K": S
 class Told(BehaviourWithPorts, tag="Told"):
     """A leaf that answers as it is told, and writes down what happens to it in the list at `blackboard.robot`."""
 
-    INPUT_PORTS = {"does": PortInformation(data_type=str)}
-    OUTPUT_PORTS: dict[str, PortInformation] = {}
+    INPUT_PORTS: ClassVar = {"does": PortInformation(data_type=str)}
+    OUTPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
 
     def setup(self, **kwargs: Any) -> None:
         self.log: list[str] = kwargs["blackboard"].robot
@@ -81,7 +81,8 @@ class Bench:
 
 def document(body: str, trees: str = "") -> str:
     """The whole XML of a body in short form; `trees` are further trees, as `ID { body }`."""
-    more = "".join(f'<BehaviorTree ID="{name}">{short(inner)}</BehaviorTree>' for name, inner in re.findall(r"(\w+) \{(.*?)\}(?=\s*\w+ \{|\s*$)", trees, re.S))
+    others = re.findall(r"(\w+) \{(.*?)\}(?=\s*\w+ \{|\s*$)", trees, re.S)
+    more = "".join(f'<BehaviorTree ID="{name}">{short(inner)}</BehaviorTree>' for name, inner in others)
     return f'<root BTCPP_format="4" main_tree_to_execute="Main"><BehaviorTree ID="Main">{short(body)}</BehaviorTree>{more}</root>'
 
 

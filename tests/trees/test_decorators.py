@@ -179,7 +179,7 @@ RUNTIME_ERRORS = [
     ("<Switch2>a:S b:S</Switch2>", "Switch2 needs 3 children (one per case and a default), it has 2"),
     ("<Sleep/>", "port 'msec' is missing"),
     ("<Repeat>a:S</Repeat>", "port 'num_cycles' is missing"),
-    ('<Precondition if="false" else="WRONG">a:S</Precondition>', "'WRONG' is no NodeStatus: expected one of IDLE, RUNNING, SUCCESS, FAILURE, SKIPPED"),
+    ('<Precondition if="0" else="WRONG">a:S</Precondition>', "'WRONG' is no NodeStatus: expected one of IDLE, RUNNING, SUCCESS, FAILURE, SKIPPED"),
     ('<Repeat num_cycles="{n}">a:S</Repeat>', "entry 'n' has no value"),
     ('<Sequence _skipIf="nothing">a:S</Sequence>', "script _skipIf failed: unknown name 'nothing'"),
     ('<Script code="x = 1"/>', "script failed: entry 'x' does not exist; ':=' would create it"),

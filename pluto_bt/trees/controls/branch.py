@@ -21,7 +21,7 @@ class IfThenElse(ControlNode):
         check_branches(self)
         start(self)
         if self.branch == 0:
-            result = self.children[0].step()
+            result: Result = self.children[0].step()
             if result is RUNNING:
                 return RUNNING
             if result is SKIPPED:
@@ -45,7 +45,7 @@ class WhileDoElse(ControlNode):
     def step(self) -> Result:
         check_branches(self)
         start(self)
-        result = self.children[0].step()
+        result: Result = self.children[0].step()
         if result is RUNNING:
             return RUNNING
         if result is SKIPPED:

@@ -28,7 +28,7 @@ class Fallback(ControlNode):
         while self.index < count:
             child = children[self.index]
             before = child.status
-            result = child.step()
+            result: Result = child.step()
             if result is FAILURE:
                 self.index += 1
                 if self.YIELDS and before is IDLE and self.index < count:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.node import ControlNode, start
 from pluto_bt.trees.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Result
@@ -16,7 +16,7 @@ class Parallel(ControlNode):
     A negative count n means N + n + 1 of N children, so -1 means all.
     """
 
-    PORTS = {
+    PORTS: ClassVar = {
         "success_count": PortModel("success_count", kind=INT, default="-1", description="successes needed; negative: counted from all"),
         "failure_count": PortModel("failure_count", kind=INT, default="1", description="failures that end it; negative: counted from all"),
     }
@@ -40,7 +40,7 @@ class Parallel(ControlNode):
         skips = 0
         for i, child in enumerate(self.children):
             if i not in self.done:
-                result = child.step()
+                result: Result = child.step()
                 if result is SKIPPED:
                     skips += 1
                 elif result is not RUNNING:
@@ -72,7 +72,7 @@ class Parallel(ControlNode):
 class ParallelAll(ControlNode):
     """Waits for all children; FAILURE if `max_failures` or more of them failed."""
 
-    PORTS = {"max_failures": PortModel("max_failures", kind=INT, default="1", description="so many failures make the node fail")}
+    PORTS: ClassVar = {"max_failures": PortModel("max_failures", kind=INT, default="1", description="so many failures make the node fail")}
 
     def __init__(self, name: str = "", children: list[Any] | None = None) -> None:
         super().__init__(name, children)
@@ -89,7 +89,7 @@ class ParallelAll(ControlNode):
         for i, child in enumerate(self.children):
             if i in self.done:
                 continue
-            result = child.step()
+            result: Result = child.step()
             if result is SKIPPED:
                 skips += 1
             elif result is not RUNNING:

@@ -15,7 +15,7 @@ class ReactiveSequence(ControlNode):
             self.last = IDLE
         all_skipped = True
         for child in self.children:
-            result = child.step()
+            result: Result = child.step()
             if result is SUCCESS:
                 all_skipped = False
             elif result is RUNNING:
@@ -43,7 +43,7 @@ class ReactiveFallback(ControlNode):
             self.last = IDLE
         all_skipped = True
         for child in self.children:
-            result = child.step()
+            result: Result = child.step()
             if result is FAILURE:
                 all_skipped = False
             elif result is RUNNING:

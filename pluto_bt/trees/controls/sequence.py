@@ -31,7 +31,7 @@ class Sequence(ControlNode):
         while self.index < count:
             child = children[self.index]
             before = child.status
-            result = child.step()
+            result: Result = child.step()
             if result is SUCCESS:
                 self.index += 1
                 if self.YIELDS and before is IDLE and self.index < count:

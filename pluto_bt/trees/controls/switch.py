@@ -28,7 +28,7 @@ class Switch(ControlNode):
         choice = self._choice()
         if self.running is not None and self.running != choice:
             reset(self.children[self.running])
-        result = self.children[choice].step()
+        result: Result = self.children[choice].step()
         if result is SKIPPED:
             self.running = None
             return self.skip()

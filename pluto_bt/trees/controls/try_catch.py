@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.node import ControlNode, reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
@@ -17,7 +17,7 @@ class TryCatch(ControlNode):
     """
 
     CHILDREN = (2, None)
-    PORTS = {"catch_on_halt": PortModel("catch_on_halt", kind=BOOL, default="false", description="clean up also when halted")}
+    PORTS: ClassVar = {"catch_on_halt": PortModel("catch_on_halt", kind=BOOL, default="false", description="clean up also when halted")}
 
     def __init__(self, name: str = "", children: list[Any] | None = None) -> None:
         super().__init__(name, children)
@@ -35,7 +35,7 @@ class TryCatch(ControlNode):
             return self._clean_up()
         tries = self.children[:-1]
         while self.index < len(tries):
-            result = tries[self.index].step()
+            result: Result = tries[self.index].step()
             if result is RUNNING:
                 return RUNNING
             if result is FAILURE:
@@ -54,7 +54,8 @@ class TryCatch(ControlNode):
         return SUCCESS
 
     def _clean_up(self) -> Result:
-        if self.children[-1].step() is RUNNING:
+        result: Result = self.children[-1].step()
+        if result is RUNNING:
             return RUNNING
         self.reset_children()
         self.index = 0

@@ -39,7 +39,7 @@ class Loop(DecoratorNode):
         if self.status is not RUNNING:
             self.status = RUNNING
             self.last = IDLE
-        result = self.child.step()
+        result: Result = self.child.step()
         self.working = result is RUNNING
         if result is FAILURE:
             reset(self.child)
@@ -68,9 +68,9 @@ class Loop(DecoratorNode):
                 return deque(split_list(self.ITEM, value))
             if isinstance(value, Iterable):
                 return deque(self.ITEM.convert(item) for item in value)
+            raise ValueError(f"it holds no list but a {type(value).__name__}")
         except (ValueError, PortProblem) as error:
             self.fail(f"port 'queue': {error}")
-        self.fail(f"port 'queue' holds no list but a {type(value).__name__}")
 
     def _empty(self) -> Result:
         answer: Result = self.read("if_empty")

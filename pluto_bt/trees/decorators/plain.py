@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+from py_trees.common import Status
+
 from pluto_bt.trees.engine.node import DecoratorNode, reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
 
@@ -11,38 +13,38 @@ from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCES
 class Mapping(DecoratorNode):
     """Tells its parent `ANSWERS[child's answer]`; RUNNING and SKIPPED pass."""
 
-    ANSWERS: ClassVar[dict[Result, Result]] = {}
+    ANSWERS: ClassVar[dict[Result, Status]] = {}
 
     def step(self) -> Result:
         if self.status is not RUNNING:
             self.status = RUNNING
             self.last = IDLE
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
         if result is not RUNNING:
             reset(self.child)
-            result = self.ANSWERS[result]
-            self.status = result
-        return result  # type: ignore[no-any-return]
+            self.status = self.ANSWERS[result]
+            return self.status
+        return result
 
 
 class Inverter(Mapping):
     """SUCCESS becomes FAILURE and FAILURE becomes SUCCESS."""
 
-    ANSWERS = {SUCCESS: FAILURE, FAILURE: SUCCESS}
+    ANSWERS: ClassVar = {SUCCESS: FAILURE, FAILURE: SUCCESS}
 
 
 class ForceSuccess(Mapping):
     """A child that ends has succeeded."""
 
-    ANSWERS = {SUCCESS: SUCCESS, FAILURE: SUCCESS}
+    ANSWERS: ClassVar = {SUCCESS: SUCCESS, FAILURE: SUCCESS}
 
 
 class ForceFailure(Mapping):
     """A child that ends has failed."""
 
-    ANSWERS = {SUCCESS: FAILURE, FAILURE: FAILURE}
+    ANSWERS: ClassVar = {SUCCESS: FAILURE, FAILURE: FAILURE}
 
 
 class KeepRunningUntilFailure(DecoratorNode):
@@ -52,7 +54,7 @@ class KeepRunningUntilFailure(DecoratorNode):
         if self.status is not RUNNING:
             self.status = RUNNING
             self.last = IDLE
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is FAILURE:
             reset(self.child)
             self.status = FAILURE

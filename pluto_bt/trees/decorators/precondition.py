@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.node import DecoratorNode, reset, start
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
@@ -14,7 +14,7 @@ from pluto_bt.trees.values import SCRIPT, STATUS
 class Precondition(DecoratorNode):
     """Asks `if` before the child begins, not while it is RUNNING; when false the answer is `else`."""
 
-    PORTS = {
+    PORTS: ClassVar = {
         "if": PortModel("if", kind=SCRIPT, at_load=True, description="the condition"),
         "else": PortModel("else", kind=STATUS, default="FAILURE", description="the answer when it is false"),
     }
@@ -32,7 +32,7 @@ class Precondition(DecoratorNode):
             self.working = self.script.is_true(self)
             if not self.working:
                 return self._answer(otherwise)
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
         if result is RUNNING:
@@ -41,7 +41,7 @@ class Precondition(DecoratorNode):
         reset(self.child)
         self.working = False
         self.status = SUCCESS if result is SUCCESS else FAILURE
-        return result  # type: ignore[no-any-return]
+        return result
 
     def _answer(self, answer: Result) -> Result:
         if answer is SKIPPED:

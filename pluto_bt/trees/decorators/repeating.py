@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.node import DecoratorNode, reset, start
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
@@ -13,7 +13,7 @@ from pluto_bt.trees.values import INT
 class RetryUntilSuccessful(DecoratorNode):
     """Again while the child fails, `num_attempts` times at most (-1: without limit)."""
 
-    PORTS = {"num_attempts": PortModel("num_attempts", kind=INT, description="attempts; -1: without limit")}
+    PORTS: ClassVar = {"num_attempts": PortModel("num_attempts", kind=INT, description="attempts; -1: without limit")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
@@ -24,7 +24,7 @@ class RetryUntilSuccessful(DecoratorNode):
         start(self)
         while limit == -1 or self.count < limit:
             before = self.child.status
-            result = self.child.step()
+            result: Result = self.child.step()
             if result is RUNNING:
                 return RUNNING
             reset(self.child)
@@ -51,7 +51,7 @@ class RetryUntilSuccessful(DecoratorNode):
 class Repeat(DecoratorNode):
     """Again while the child succeeds, `num_cycles` times (-1: without end)."""
 
-    PORTS = {"num_cycles": PortModel("num_cycles", kind=INT, description="rounds; -1: without end")}
+    PORTS: ClassVar = {"num_cycles": PortModel("num_cycles", kind=INT, description="rounds; -1: without end")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
@@ -62,7 +62,7 @@ class Repeat(DecoratorNode):
         start(self)
         while limit == -1 or self.count < limit:
             before = self.child.status
-            result = self.child.step()
+            result: Result = self.child.step()
             if result is RUNNING:
                 return RUNNING
             reset(self.child)

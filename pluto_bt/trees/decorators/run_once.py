@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
+
+from py_trees.common import Status
 
 from pluto_bt.trees.engine.node import DecoratorNode, reset, start
-from pluto_bt.trees.engine.status import RUNNING, SKIPPED, SUCCESS, Result, Status
+from pluto_bt.trees.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.values import BOOL
 
@@ -13,7 +15,7 @@ from pluto_bt.trees.values import BOOL
 class RunOnce(DecoratorNode):
     """After the child's first end: SKIPPED for ever, or its answer again with `then_skip` false. A halt does not re-arm it."""
 
-    PORTS = {"then_skip": PortModel("then_skip", kind=BOOL, default="true", description="afterwards skip (else repeat the answer)")}
+    PORTS: ClassVar = {"then_skip": PortModel("then_skip", kind=BOOL, default="true", description="afterwards skip (else repeat the answer)")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
@@ -27,11 +29,11 @@ class RunOnce(DecoratorNode):
             self.status = self.answer
             return self.answer
         start(self)
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
         if result is not RUNNING:
-            self.answer = self.status = result
+            self.answer = self.status = SUCCESS if result is SUCCESS else FAILURE
             reset(self.child)
             self.feedback_message = f"done once: {'SUCCESS' if result is SUCCESS else 'FAILURE'}"
-        return result  # type: ignore[no-any-return]
+        return result

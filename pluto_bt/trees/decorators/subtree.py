@@ -21,10 +21,10 @@ class SubTree(DecoratorNode):
         if self.status is IDLE:
             self.status = RUNNING
             self.last = IDLE
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
         if result is not RUNNING:
             reset(self.child)
         self.status = result
-        return result  # type: ignore[no-any-return]
+        return result

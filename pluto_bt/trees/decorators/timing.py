@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.context import Timer
 from pluto_bt.trees.engine.node import DecoratorNode, reset, start
@@ -14,7 +14,7 @@ from pluto_bt.trees.values import UINT
 class Timeout(DecoratorNode):
     """Halts the running child when the time is over, at that very moment; the next tick then fails without ticking the child."""
 
-    PORTS = {"msec": PortModel("msec", kind=UINT, unit="ms", description="time allowed; 0: no limit")}
+    PORTS: ClassVar = {"msec": PortModel("msec", kind=UINT, unit="ms", description="time allowed; 0: no limit")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
@@ -34,14 +34,14 @@ class Timeout(DecoratorNode):
             self.started = False
             self.status = FAILURE
             return FAILURE
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
         if result is not RUNNING:
             self.forget()
             reset(self.child)
             self.status = SUCCESS if result is SUCCESS else FAILURE
-        return result  # type: ignore[no-any-return]
+        return result
 
     def _expire(self) -> None:
         if self.child.status is RUNNING:
@@ -60,7 +60,7 @@ class Timeout(DecoratorNode):
 class Delay(DecoratorNode):
     """RUNNING until the time is over, then the child; each activation waits again."""
 
-    PORTS = {"delay_msec": PortModel("delay_msec", kind=UINT, unit="ms", description="how long to wait before the child")}
+    PORTS: ClassVar = {"delay_msec": PortModel("delay_msec", kind=UINT, unit="ms", description="how long to wait before the child")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
@@ -78,14 +78,14 @@ class Delay(DecoratorNode):
                 self.timer = self.context.call_in(delay_ms / 1000, self._wake)
         if not self.over:
             return RUNNING
-        result = self.child.step()
+        result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
         if result is not RUNNING:
             self.started = False
             reset(self.child)
             self.status = SUCCESS if result is SUCCESS else FAILURE
-        return result  # type: ignore[no-any-return]
+        return result
 
     def _wake(self) -> None:
         self.over = True

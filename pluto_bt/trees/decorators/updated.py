@@ -29,7 +29,7 @@ class UpdateWatch:
 class EntryUpdated(DecoratorNode):
     """A child that is RUNNING is continued without looking."""
 
-    PORTS = {"entry": PortModel("entry", at_load=True, description="the entry to watch")}
+    PORTS: ClassVar = {"entry": PortModel("entry", at_load=True, description="the entry to watch")}
     OTHERWISE: ClassVar[Result] = SKIPPED
 
     def __init__(self, name: str = "", child: Any = None) -> None:
@@ -43,7 +43,7 @@ class EntryUpdated(DecoratorNode):
                 return self.skip()
             self.status = RUNNING
             return RUNNING
-        result = self.child.step()
+        result: Result = self.child.step()
         self.working = result is RUNNING
         if result is SKIPPED:
             return self.skip()
@@ -52,7 +52,7 @@ class EntryUpdated(DecoratorNode):
             return RUNNING
         reset(self.child)
         self.status = result
-        return result  # type: ignore[no-any-return]
+        return result
 
     def forget(self) -> None:
         self.working = False

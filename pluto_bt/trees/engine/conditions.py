@@ -13,16 +13,17 @@ from typing import Any, Final
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
 from pluto_bt.trees.script import ScriptRunner
 
-PRE_CONDITIONS: Final = ("_failureIf", "_successIf", "_skipIf", "_while")
-POST_CONDITIONS: Final = ("_onHalted", "_onFailure", "_onSuccess", "_post")
+PRE_CONDITIONS: Final[tuple[str, ...]] = ("_failureIf", "_successIf", "_skipIf", "_while")
+POST_CONDITIONS: Final[tuple[str, ...]] = ("_onHalted", "_onFailure", "_onSuccess", "_post")
 CONDITIONS: Final = PRE_CONDITIONS + POST_CONDITIONS
 
 
 def guard(node: Any, scripts: Mapping[str, ScriptRunner], skip: Callable[[Any], Result]) -> None:
     """Give `node` its conditions. `skip(node)` notes that it was skipped and answers SKIPPED."""
-    step, halt = node.step, node.halt
+    step: Callable[[], Result] = node.step
+    halt: Callable[[], None] = node.halt
     pre = [(name, scripts[name]) for name in PRE_CONDITIONS if name in scripts]
-    after = {
+    after: dict[Result, list[ScriptRunner]] = {
         SUCCESS: [scripts[name] for name in ("_onSuccess", "_post") if name in scripts],
         FAILURE: [scripts[name] for name in ("_onFailure", "_post") if name in scripts],
     }
@@ -52,7 +53,7 @@ def guard(node: Any, scripts: Mapping[str, ScriptRunner], skip: Callable[[Any], 
             script.run(node)
         if result is not SKIPPED:
             node.status = result
-        return result  # type: ignore[no-any-return]
+        return result
 
     node.step, node.halt = guarded_step, guarded_halt
 

@@ -51,6 +51,7 @@ class Context:
         self.clock: MissionClock = clock if clock is not None else FrozenClock()
         self.woken = False
         self.skipped: list[Any] = []
+        self.current: Any = None  # the leaf that was begun last: the one to blame while a tick does not come back
         self.late_error: Exception | None = None  # raised by a timer between ticks, told at the next tick
         self._polled: list[tuple[float, int, PolledTimer]] = []
         self._order = itertools.count()

@@ -14,7 +14,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.engine.errors import StepError
+from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
 
 
@@ -32,6 +32,7 @@ def _own_step(leaf: Any, context: Context) -> Callable[[], Result]:
     has_end = type(leaf).terminate is not Behaviour.terminate or "terminate" in leaf.__dict__
 
     def step() -> Result:
+        context.current = leaf
         try:
             if has_start and leaf.status is not RUNNING:
                 initialise()
@@ -57,6 +58,7 @@ def _own_step(leaf: Any, context: Context) -> Callable[[], Result]:
 
 def _foreign_step(leaf: Any, context: Context) -> Callable[[], Result]:
     def step() -> Result:
+        context.current = leaf
         try:
             leaf.tick_once()
         except Exception as error:

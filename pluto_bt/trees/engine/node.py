@@ -19,7 +19,7 @@ from py_trees.common import BlackBoxLevel, Status
 from py_trees.logging import Logger
 
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.engine.errors import StepError
+from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result, Skip
 from pluto_bt.trees.ports import PortModel, PortProblem
 
@@ -35,7 +35,7 @@ class Node(Behaviour):
 
     def __init__(self, name: str = "") -> None:
         self.name = name or type(self).__name__
-        self.id = uuid.UUID(int=next(_COUNT))  # counted: the same in every run once a mission has numbered its nodes
+        self.number = next(_COUNT)  # a mission numbers its nodes anew, so that they are the same in every run
         self.status: Status = IDLE
         self.last: Result = IDLE
         self.children: list[Any] = []
@@ -115,12 +115,17 @@ class Node(Behaviour):
         self.status = new_status
 
     @property
-    def iterator(self) -> Iterator[Behaviour]:
+    def id(self) -> uuid.UUID:  # type: ignore[override]  # py_trees assigns a random one
+        """The number of the node as py_trees wants it."""
+        return uuid.UUID(int=self.number)
+
+    @property
+    def iterator(self) -> Iterator[Behaviour]:  # type: ignore[override]  # py_trees assigns it, we never do
         """py_trees keeps a generator here."""
         return self.tick()
 
     @property
-    def qualified_name(self) -> str:
+    def qualified_name(self) -> str:  # type: ignore[override]  # as above
         """`Type/name`, as py_trees shows it."""
         return f"{type(self).__name__}/{self.name}"
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
+from py_trees.common import Status
+
 from pluto_bt.trees.decorators.updated import UpdateWatch
 from pluto_bt.trees.engine.node import Node
 from pluto_bt.trees.engine.status import FAILURE, SUCCESS, Result
@@ -16,7 +20,7 @@ class SetBlackboard(Node):
     `output_key` is the name without braces; with braces it is an entry that holds the name.
     """
 
-    PORTS = {
+    PORTS: ClassVar = {
         "value": PortModel("value", description="text, or {key} to copy from"),
         "output_key": PortModel("output_key", "inout", description="the name of the entry to write"),
     }
@@ -34,7 +38,7 @@ class SetBlackboard(Node):
             self.fail(str(problem))
         return self.status
 
-    def _write(self, key: str) -> Result:
+    def _write(self, key: str) -> Status:
         if self.scope is None:
             self.fail("port 'value' is missing")
         if self.source_key is None:
@@ -55,7 +59,7 @@ class SetBlackboard(Node):
 class UnsetBlackboard(Node):
     """Removes the local entry; SUCCESS even if there is none."""
 
-    PORTS = {"key": PortModel("key", kind=STRING, description="the name of the entry")}
+    PORTS: ClassVar = {"key": PortModel("key", kind=STRING, description="the name of the entry")}
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name)
@@ -72,7 +76,7 @@ class UnsetBlackboard(Node):
 class WasEntryUpdated(Node):
     """SUCCESS if the entry was written since the last look, else FAILURE."""
 
-    PORTS = {"entry": PortModel("entry", at_load=True, description="the entry to watch")}
+    PORTS: ClassVar = {"entry": PortModel("entry", at_load=True, description="the entry to watch")}
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name)

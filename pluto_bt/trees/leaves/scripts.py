@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from pluto_bt.trees.engine.node import Node
 from pluto_bt.trees.engine.status import FAILURE, SUCCESS, Result
 from pluto_bt.trees.ports import PortModel
@@ -12,7 +14,7 @@ from pluto_bt.trees.values import SCRIPT
 class Script(Node):
     """Runs `code`; SUCCESS."""
 
-    PORTS = {"code": PortModel("code", kind=SCRIPT, at_load=True, description="the statements")}
+    PORTS: ClassVar = {"code": PortModel("code", kind=SCRIPT, at_load=True, description="the statements")}
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name)
@@ -30,7 +32,7 @@ class ScriptCondition(Node):
     """SUCCESS if `code` is true, else FAILURE."""
 
     KIND = "Condition"
-    PORTS = {"code": PortModel("code", kind=SCRIPT, at_load=True, description="the condition")}
+    PORTS: ClassVar = {"code": PortModel("code", kind=SCRIPT, at_load=True, description="the condition")}
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from pluto_bt.trees.engine.context import Timer
 from pluto_bt.trees.engine.node import Node
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SUCCESS, Result
@@ -12,7 +14,7 @@ from pluto_bt.trees.values import UINT
 class Sleep(Node):
     """RUNNING until the time is over, then SUCCESS; with 0 at once. Asks for a tick when the time is over."""
 
-    PORTS = {"msec": PortModel("msec", kind=UINT, unit="ms", description="how long")}
+    PORTS: ClassVar = {"msec": PortModel("msec", kind=UINT, unit="ms", description="how long")}
 
     def __init__(self, name: str = "") -> None:
         super().__init__(name)

@@ -40,7 +40,10 @@ class Construction:
         node = self._build(plan)
         if node is None:
             return None
-        node.id = uuid.UUID(int=plan.uid)
+        if isinstance(node, Node):
+            node.number = plan.uid
+        else:
+            node.id = uuid.UUID(int=plan.uid)
         self.tracked.append(Tracked(node, plan))
         if parent is not None:
             parent.add_child(node)

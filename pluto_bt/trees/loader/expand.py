@@ -116,11 +116,9 @@ class Expansion:
             return None  # told by the static check
         tree = self._files.trees.get(attribute.value)
         if tree is None:
-            mend = did_you_mean(attribute.value, self._files.trees)
-            known = ", ".join(self._files.trees)
-            self._report.error(
-                attribute.value_place, "unknown-tree", f"there is no tree {attribute.value!r}", expected=f"one of: {known}", found=attribute.value, mend=mend
-            )
+            mend, what = did_you_mean(attribute.value, self._files.trees), f"there is no tree {attribute.value!r}"
+            known = "one of: " + ", ".join(self._files.trees)
+            self._report.error(attribute.value_place, "unknown-tree", what, expected=known, found=attribute.value, mend=mend)
         elif attribute.value in open_trees:
             circle = " → ".join((*open_trees[open_trees.index(attribute.value) :], attribute.value))
             what = f"tree {attribute.value!r} contains itself"

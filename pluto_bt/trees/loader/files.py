@@ -156,8 +156,8 @@ class MissionFiles:
             self.faults.error(attribute.value_place, "include-cycle", "the file includes itself", expected="no circle", found=chain)
             return
         if not path.is_file():
-            mend = did_you_mean(path.name, _neighbours(path))
-            self.faults.error(attribute.value_place, "no-file", f"there is no file {attribute.value!r}", expected="a mission file", found=shown, mend=mend)
+            mend, what = did_you_mean(path.name, _neighbours(path)), f"there is no file {attribute.value!r}"
+            self.faults.error(attribute.value_place, "no-file", what, expected="a mission file", found=shown, mend=mend)
             return
         if real in self._read:
             return  # its trees are here already

@@ -32,8 +32,8 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
             _write(root, port.name, port.default, port.type_name, report)
         elif given is not None:
             what = f'input "{port.name}" of {main.tree_id!r} is not given'
-            mend = f"add --port {port.name}=VALUE"
-            report.error(port.element.place, "missing-input", what, expected=port.description or port.type_name or "a value", found="nothing", mend=mend)
+            wanted, mend = port.description or port.type_name or "a value", f"add --port {port.name}=VALUE"
+            report.error(port.element.place, "missing-input", what, expected=wanted, found="nothing", mend=mend)
 
 
 def _write(root: Scope, name: str, text: str, type_name: str, report: Report) -> None:
@@ -49,9 +49,8 @@ def _check_name(name: str, model: Model | None, main: TreeSource, report: Report
     known = list(model.ports) if model is not None else _keys_used(main)
     if name not in known:
         what = f'tree {main.tree_id!r} has no input "{name}"'
-        report.error(
-            Place(f"--port {name}"), "unknown-input", what, expected="one of: " + (", ".join(known) or "none"), found=name, mend=did_you_mean(name, known)
-        )
+        wanted = "one of: " + (", ".join(known) or "none")
+        report.error(Place(f"--port {name}"), "unknown-input", what, expected=wanted, found=name, mend=did_you_mean(name, known))
 
 
 def _keys_used(main: TreeSource) -> list[str]:

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import contextlib
+import gc
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
 from pluto_bt.trees.engine.context import Context, MissionClock
-from pluto_bt.trees.engine.errors import MissionError
+from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
@@ -62,7 +64,12 @@ def load_mission(
         plugins: modules with leaves, to be imported.
     Raises: MissionError with all faults, for everything that BehaviorTree.CPP refuses at load.
     """
-    reading = _read(text_or_path, nodes, blackboard, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins)
+    with no_collecting():
+        reading = _read(text_or_path, nodes, blackboard, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins)
+        return _build(reading, clock, enums, robot)
+
+
+def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int] | None, robot: Any) -> Mission:
     report, faults = reading.report, reading.report.faults
     if report.stops_loading or reading.plan is None or reading.main is None:
         raise MissionError(faults.in_order())
@@ -88,7 +95,8 @@ def check_mission(
 ) -> tuple[Fault, ...]:
     """All faults of a mission, in the order of the text: also those that BehaviorTree.CPP finds only while ticking, and as warnings those it
     silently accepts. Makes no node. `models` are files whose TreeNodesModel describes foreign nodes."""
-    reading = _read(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
+    with no_collecting():
+        reading = _read(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
     return reading.report.faults.in_order()
 
 
@@ -150,7 +158,7 @@ def _foreign(model: Any) -> NodeType:
 
     ports = {port.name: PortModel(port.name, port.direction, default=port.default, required=False) for port in model.ports.values()}
     children = {"Control": (1, None), "Decorator": (1, 1)}.get(model.tag, (0, 0))
-    return NodeType(model.name, model.tag, ports, None, children)  # type: ignore[arg-type]
+    return NodeType(model.name, model.tag, ports, None, children)
 
 
 def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
@@ -194,6 +202,18 @@ def _unreferenced(reading: Reading, known: str) -> TreeSource | None:
     mend = f'add main_tree_to_execute="{(free or list(files.trees.values()))[0].tree_id}" to <root>, or give --tree'
     reading.report.error(files.root.place, "no-main-tree", what, expected=f"one of: {known}", found=found, mend=mend)
     return None
+
+
+@contextlib.contextmanager
+def no_collecting() -> Iterator[None]:
+    """No garbage collection inside: a growing mission holds no garbage, and looking for it would take as long as loading."""
+    was_on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_on:
+            gc.enable()
 
 
 def _monotonic_clock() -> MissionClock:

@@ -102,7 +102,8 @@ class StaticCheck:
             what = f"<{node_type.name}> must have a child"
             self._report.error(element.place, "child-count", what, expected="1 or more", found="0")
         elif node_type.name == "TryCatch" and count < fewest:
-            self._report.error(element.place, "child-count", "<TryCatch> needs something to try and a clean-up", expected="2 or more", found=str(count))
+            what = "<TryCatch> needs something to try and a clean-up"
+            self._report.error(element.place, "child-count", what, expected="2 or more", found=str(count))
         elif node_type.kind == "Control" and not fewest <= count <= (most or count):
             expected = str(fewest) if fewest == most else f"{fewest} to {most}"
             what = f"<{node_type.name}> has the wrong number of children"
@@ -147,8 +148,8 @@ class StaticCheck:
             self._report.error(attribute.place, "unknown-port", what, expected=f"one of: {known}", found=attribute.name, mend=mend)
         elif port.direction == "out":
             if key_of(port.name, attribute.value) is None:
-                what = f'output port "{port.name}" needs an entry'
-                self._report.warning(attribute.value_place, "output-literal", what, expected="{key}", found=attribute.value, mend="put it in {braces}")
+                what, mend = f'output port "{port.name}" needs an entry', "put it in {braces}"
+                self._report.warning(attribute.value_place, "output-literal", what, expected="{key}", found=attribute.value, mend=mend)
         elif is_checked_as_literal(attribute.value) and not (port.kind in (STRING, SCRIPT) and key_of(port.name, attribute.value)):
             self._check_literal(attribute, port)
 
@@ -194,8 +195,8 @@ class StaticCheck:
         known = (*CONDITIONS, *TOOL_ATTRIBUTES)
         for name, attribute in element.attributes.items():
             if not is_port_name(name) and name not in (*known, "name", "ID"):
-                what = f'attribute "{name}" is ignored'
-                self._report.warning(attribute.place, "ignored-attribute", what, expected="one of: " + ", ".join(known), mend=did_you_mean(name, known))
+                what, wanted = f'attribute "{name}" is ignored', "one of: " + ", ".join(known)
+                self._report.warning(attribute.place, "ignored-attribute", what, expected=wanted, mend=did_you_mean(name, known))
 
     def _check_thresholds(self, element: XmlElement) -> None:
         count = len(element.children)
@@ -212,11 +213,11 @@ class StaticCheck:
                 what = f"{name} is more than the number of children"
                 self._report.late(attribute.value_place, "threshold", what, expected=f"at most {count}", found=attribute.value)
         needed = absolute_count(values.get("success_count", -1), count)
-        limit = values.get("failure_count", 1)
-        if element.tag != "ParallelAll" and count >= absolute_count(limit, count) > count - needed + 1:
-            what = f"failure_count {limit} has no effect: {count - needed + 1} failures already end it"
-            place = element.attributes["failure_count"].value_place if "failure_count" in element.attributes else element.place
-            self._report.warning(place, "unreachable-threshold", what, expected=f"at most {count - needed + 1}", found=str(limit))
+        limit, most = values.get("failure_count"), count - needed + 1  # so many failures already leave too few children to succeed
+        if limit is not None and count >= needed and count >= absolute_count(limit, count) > most:
+            what = f"failure_count {limit} has no effect: {most} failures already end it"
+            place = element.attributes["failure_count"].value_place
+            self._report.warning(place, "unreachable-threshold", what, expected=f"at most {most}", found=str(limit))
 
 
 def _mend_literal(text: str, problem: str) -> str:

@@ -61,10 +61,11 @@ class _Parser:
         self._depth = 0
 
     def script(self) -> Iterator[Term]:
-        if self._now.kind == "end":
+        first = self._tokens[0]
+        if first.kind == "end":
             raise ScriptSyntaxError(0, "the script is blank", expected="a statement", found="blanks")
-        if self._now.text == ";" and self._now.kind == "sign":
-            raise ScriptSyntaxError(self._now.position, "a script cannot begin with ';'", expected="a statement", found=";")
+        if first.kind == "sign" and first.text == ";":
+            raise ScriptSyntaxError(first.position, "a script cannot begin with ';'", expected="a statement", found=";")
         while self._now.kind != "end":
             yield self._statement()
             while self._take(";"):

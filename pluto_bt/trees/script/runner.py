@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from pluto_bt.trees.engine.errors import StepError
+from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.scopes import Scope
 from pluto_bt.trees.script.parser import parse_script
 from pluto_bt.trees.script.terms import Env

@@ -1,0 +1,49 @@
+"""The gateway as a module: gives the link its view of the robot and steps it."""
+
+from __future__ import annotations
+
+from pluto_bt.gateway.link import GatewayLink
+from pluto_bt.gateway.listen import Address
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.gateway_port import GatewayPort
+from pluto_bt.source import InputError
+
+
+class Gateway:
+    """Listens from the moment it is made, so that a port in use is told before anything moves."""
+
+    def __init__(self, context: Context) -> None:
+        """Raises: InputError if the address that was asked for cannot be had; the default one in use is only a warning."""
+        asked: Address | None = context.extras["gateway"]
+        self._link: GatewayLink | None = GatewayLink(GatewayPort(context), asked or Address())
+        self._trouble = ""
+        try:
+            self._link.listen()
+        except InputError as error:
+            if asked is not None:
+                raise
+            self._link, self._trouble = None, error.faults[0].message
+        self._say = context.say
+
+    @property
+    def address(self) -> Address | None:
+        """Where the gateway listens, None if it does not."""
+        return None if self._link is None else self._link.address
+
+    def start(self, now_s: float) -> None:
+        """Spawn the process and tell the address."""
+        if self._link is None:
+            self._say("warning", "no-gateway", "gateway", f"this run has no gateway: {self._trouble}; give another port with --gateway HOST:PORT")
+            return
+        self._link.start(now_s)
+        self._say("info", "gateway", "gateway", f"listening on {self._link.address}")
+
+    def step(self, now_s: float) -> None:
+        """Answer, publish, look after the process."""
+        if self._link is not None:
+            self._link.step(now_s)
+
+    def stop(self) -> None:
+        """Tell the clients, end the process, free the port."""
+        if self._link is not None:
+            self._link.stop()

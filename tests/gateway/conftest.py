@@ -1,0 +1,66 @@
+"""A real gateway process for a robot in the test's own process."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+
+import pytest
+
+from pluto_bt.gateway.client import Client
+from pluto_bt.gateway.limits import Limits
+from pluto_bt.gateway.link import GatewayLink
+from pluto_bt.gateway.listen import Address
+from pluto_bt.runtime.clock import MonotonicClock
+from tests.gateway.robot import FakeRobot
+
+
+class Running:
+    """A link that a thread steps, as the scheduler would."""
+
+    def __init__(self) -> None:
+        self.robot = FakeRobot()
+        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), limits=Limits(linger_s=0.3))
+        self.clock = MonotonicClock()
+        self.link.start(0.0)
+        self.on_step = lambda: None
+        self._over = threading.Event()
+        self._thread = threading.Thread(target=self._pump, daemon=True)
+
+    @property
+    def address(self) -> Address:
+        address = self.link.address
+        assert address is not None
+        return address
+
+    def pump(self) -> None:
+        """Begin to step."""
+        self._thread.start()
+
+    def client(self, **given: str) -> Client:
+        return Client(*self.address, timeout_s=20.0, **given)
+
+    def end(self) -> None:
+        self._over.set()
+        if self._thread.is_alive():
+            self._thread.join(10.0)
+        self.link.stop()
+
+    def _pump(self) -> None:
+        while not self._over.wait(0.005):
+            self.robot.time_s = self.clock.now_s()
+            self.on_step()
+            self.link.step(self.robot.time_s)
+
+
+@pytest.fixture
+def unpumped() -> Iterator[Running]:
+    running = Running()
+    yield running
+    running.end()
+
+
+@pytest.fixture
+def running(unpumped: Running) -> Running:
+    unpumped.pump()
+    return unpumped

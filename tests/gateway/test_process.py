@@ -1,0 +1,156 @@
+"""The gateway as it runs on the robot: its own process, real sockets, clients who behave and clients who do not."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import threading
+
+import pytest
+
+from pluto_bt.blackboard import messages as m
+from pluto_bt.gateway.client import Client, GatewayError
+from pluto_bt.gateway.listen import Address, open_listener, parse_address
+from pluto_bt.source import InputError
+from tests.gateway.conftest import Running
+
+WAIT_S = 20.0
+
+
+def talk(address: Address, data: bytes) -> bytes:
+    """Send, half-close, and read until the gateway closes: what `nc -N` does."""
+    with socket.create_connection(address, timeout=WAIT_S) as connection:
+        connection.sendall(data)
+        connection.shutdown(socket.SHUT_WR)
+        return read_all(connection)
+
+
+def read_all(connection: socket.socket) -> bytes:
+    said = b""
+    while data := connection.recv(65536):
+        said += data
+    return said
+
+
+def test_a_person_talks_to_it_by_hand(running: Running) -> None:
+    running.robot.write("Localization/Pose", m.Pose(0.0))
+    said = talk(running.address, b'<hello version="1.0"/>\n<get topic="Localization/Pose"/>\n<stop/>\n').splitlines()
+    assert [line.split(b" ")[0] for line in sorted(said)] == [b"<hello", b"<ok/>", b"<value"]
+    assert running.robot.did == [("stop", "client 1")]
+
+
+@pytest.mark.parametrize(
+    ("rubbish", "code"),
+    [
+        (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n" + b"x" * 300_000, b"not-well-formed"),
+        (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", b"not-well-formed"),
+        (b"<a b='" + b"v" * 300_000, b"too-large"),
+        (b"<ping t='1'/>" * 1000, b"rate-limit"),
+    ],
+)
+def test_rubbish_is_told_why_and_then_closed(running: Running, rubbish: bytes, code: bytes) -> None:
+    with socket.create_connection(running.address, timeout=WAIT_S) as connection:
+        connection.sendall(rubbish)
+        said = read_all(connection)  # to the end: a reset would raise
+    assert b'<error code="' + code + b'"' in said.splitlines()[-1] and b'fatal="true"' in said
+
+
+def test_a_stop_acts_although_the_executive_does_not_step(unpumped: Running) -> None:
+    with unpumped.client() as client:
+        assert client.request("stop").tag == "ok"
+    assert unpumped.robot.did == [("stop", "client 1")]
+
+
+def test_floods_and_sleepers_disturb_nobody(running: Running) -> None:
+    robot = running.robot
+    scan = m.read_only([12.34] * 2000)
+    running.on_step = lambda: robot.write("sick/scan", m.LaserScan(robot.time_s, 0.0, 0.01, scan))
+    over = threading.Event()
+
+    def flood() -> None:
+        while not over.is_set():
+            try:
+                with socket.create_connection(running.address, timeout=WAIT_S) as connection:
+                    connection.sendall(b"<get topic='sick/scan'/>" * 50_000)
+            except OSError:
+                continue
+
+    sleeper = socket.socket()
+    sleeper.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+    sleeper.settimeout(WAIT_S)
+    sleeper.connect(running.address)
+    sleeper.sendall(b'<subscribe topic="sick/scan"/>')
+    floods = [threading.Thread(target=flood, daemon=True) for _ in range(2)]
+    try:
+        for thread in floods:
+            thread.start()
+        with running.client(name="watcher") as watcher, running.client(name="stopper") as stopper:
+            watcher.subscribe("sick/scan")
+            stamps = []
+            while len(stamps) < 100:
+                value = watcher.receive(WAIT_S)
+                assert value is not None
+                stamps.append(float(value.get("stamp", "")))
+                if len(stamps) % 10 == 0:
+                    assert stopper.request("stop").tag == "ok"
+        assert stamps == sorted(stamps)
+        assert robot.did.count(("stop", "stopper")) == 10
+    finally:
+        over.set()
+    lost, buffer = 0, b""
+    while not lost:  # what the sleeper finds when he wakes
+        *lines, buffer = (buffer + sleeper.recv(65536)).split(b"\n")
+        lost = max([0, *(int(line.split(b'dropped="')[1].split(b'"')[0]) for line in lines if b"dropped=" in line)])
+    sleeper.close()
+    for thread in floods:
+        thread.join(WAIT_S)
+
+
+def test_a_killed_gateway_comes_back_and_loses_nothing(running: Running) -> None:
+    run = '<run id="7" node="GoTo" goal="3;4"/>'
+    first = running.client(name="anna", session="s1")
+    first.lease("acquire", ttl_s=60, on_loss="stop")
+    first.send_raw(run.encode())
+    assert first.receive(WAIT_S).tag == "ack"  # type: ignore[union-attr]
+    pid = running.link.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGKILL)
+    with pytest.raises(GatewayError, match=r"closed|gone"):
+        while True:
+            first.receive(WAIT_S)
+    with running.client(name="anna", session="s1") as again:
+        assert again.lease("query").get("mine") == "true"
+        again.send_raw(run.encode())
+        assert again.receive(WAIT_S).tag == "ack"  # type: ignore[union-attr]
+        assert again.request("stop").tag == "ok"
+    assert running.link.restarts == 1
+    assert [deed[0] for deed in running.robot.did][:2] == ["run", "stop"]
+
+
+def test_the_end_of_the_run_is_told_to_all(running: Running) -> None:
+    with running.client(name="x") as client:
+        running.end()
+        with pytest.raises(GatewayError, match="closed"):
+            while (message := client.receive(WAIT_S)) is not None:
+                assert (message.tag, message.get("code")) == ("error", "shutdown")
+
+
+def test_a_client_without_a_gateway_is_told_so() -> None:
+    with open_listener(Address("127.0.0.1", 0)) as closed:
+        port = closed.getsockname()[1]
+    with pytest.raises(GatewayError, match=f"no gateway at 127.0.0.1:{port}: Connection refused"):
+        Client("127.0.0.1", port)
+
+
+def test_bad_addresses_are_faults() -> None:
+    with open_listener(Address("127.0.0.1", 0)) as taken, pytest.raises(InputError) as error:
+        open_listener(Address(*taken.getsockname()))
+    assert "cannot listen on 127.0.0.1" in str(error.value) and "mend      stop the other program" in str(error.value)
+    with pytest.raises(InputError, match="without TLS and a token"):
+        open_listener(Address("0.0.0.0", 0))
+    with pytest.raises(InputError, match="expected  HOST:PORT"):
+        parse_address("127.0.0.1:http")
+    assert parse_address("[::1]:80") == Address("::1", 80)
+    assert parse_address(":7501") == Address("127.0.0.1", 7501)
+    assert parse_address("localhost") == Address("localhost", 7500)
