@@ -69,7 +69,7 @@ class Movers:
 def came_closer(
     ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int
 ) -> Mask:
-    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in three beams side by side.
+    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in five beams side by side.
 
     Args:
         ranges, before: (n,) this scan and the one before, of equal angles; NaN in `before` says nothing.
@@ -87,8 +87,8 @@ def came_closer(
         dx, dy = laser[0] + c_now * x - s_now * y - last[0], laser[1] + s_now * x + c_now * y - last[1]
         x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
         j = int(np.round((np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad))
-        if j < 1 or j > before.shape[0] - 2:
+        if j < 2 or j > before.shape[0] - 3:
             continue
-        free_m = min(before[j - 1], before[j], before[j + 1])
+        free_m = min(before[j - 2], before[j - 1], before[j], before[j + 1], before[j + 2])
         moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
     return moved

@@ -14,7 +14,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.obstacles import Obstacles
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.sonar import SonarRing, unexplained
+from pluto_bt.skills.sonar import POINTS_AN_ECHO, SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
 SLACK_M = 0.2  # how much farther than an echo a laser point may be and still explain it
@@ -120,5 +120,5 @@ class Sight:
         if self.laser is not None and near.any():
             known = self._obstacles.around(robot, True, False, now_s, BEYOND_M)
             is_open = near & unexplained(ring.axes, ranges, ring.half_cone_rad, known, SLACK_M)
-        margin_m = self.parameters.margin_m
-        self._obstacles.add_echoes(ring.place(ranges, is_open, margin_m), ring.place(ranges, near & ~is_open, margin_m), robot, now_s)
+        echoes = ring.place(ranges, near, self.parameters.margin_m)
+        self._obstacles.add_echoes(echoes, is_open[near].repeat(POINTS_AN_ECHO), ring.axes, ranges, ring.half_cone_rad, robot, now_s)

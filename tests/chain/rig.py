@@ -74,8 +74,9 @@ class Rig:
         self._base = (0.0, 0.0)
         self._base_s = -1.0
         self._distance = 0.0
-        self._publish = {name: self.board.publisher(name, self.board.topic(name).writer) for name in
-                         ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose")}  # fmt: skip
+        self._gap = 0.0
+        names = ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose")
+        self._publish = {name: self.board.publisher(name, self.board.topic(name).writer) for name in names}
         self._scans: list[LaserScan] = []
         self._woken: set[str] = set()
         for name in self.links:
@@ -154,7 +155,12 @@ class Rig:
         self.pose, self.twist = new, (v, w)
 
     def _touch(self, pose: tuple[float, float, float], v: float, w: float) -> None:
+        fastest = max((math.hypot(*disc.velocity) for disc in self.discs), default=0.0)
+        self._gap -= (abs(v) + abs(w) + fastest) * TICK_NS / 1e9
+        if self._gap > max(0.0, self.clearance):
+            return  # cannot be nearer than ever before
         gap, point, owner = self._nearest(pose)
+        self._gap = gap
         self.clearance = min(self.clearance, gap)
         if gap > 0.0:
             return
