@@ -1,6 +1,7 @@
 """One robot as a whole: THE table of modules, and the `System` that makes them, joins them and runs a mission.
 
-Everything that runs is a row of MODULES; equal due times run in this order. There is no module state: several systems fit one process.
+Everything that runs is a row of MODULES; equal due times run in this order: the world and the devices, then the pose, then the chain from
+below, so that a status reaches the top in one go; a command wakes each link on its way down. There is no module state: several systems fit one process.
 """
 
 from __future__ import annotations
@@ -44,10 +45,10 @@ MODULES: tuple[Module, ...] = (
     Module("marker",    "pluto_bt.modules.marker:Marker",         0.1,    "io",         device="marker", needs=("local",),              budget_ms=1.0),
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
            wakes=("ATRV2/Drive/Raw", "sick/timing", "Localization/Post_Pose")),
-    Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    needs=("motion",),                              budget_ms=20.0),
-    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
-    Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
+    Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
+    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
+    Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    needs=("motion",),                              budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
 )
 # fmt: on
