@@ -38,7 +38,12 @@ class Parameter:
 
 
 def unit_of(name: str) -> str:
-    """The unit that the ending of a name says, or ""."""
+    """The unit that the ending of a name says, or "". That of `drift_dps_per_sqrt_s` is °/s/√s."""
+    above, per, below = name.partition("_per_")
+    if per:
+        root = "√" if below.startswith("sqrt_") else ""
+        below = below.removeprefix("sqrt_")
+        return f"{unit_of(above) or above.rsplit('_', 1)[-1]}/{root}{UNITS.get(below, below)}"
     return UNITS.get(name.rsplit("_", 1)[-1], "")
 
 
