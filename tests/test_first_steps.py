@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from pluto_bt.cli import COMMANDS, FIRST_STEPS, main
+from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.result import RunResult
-from pluto_bt.runtime.parameters import unit_of
+from pluto_bt.runtime.parameters import describe, unit_of
 
 SUGGESTED = [line.strip().partition("   ")[0] for line in FIRST_STEPS.splitlines() if line.startswith("  pluto")]
 
@@ -66,3 +67,9 @@ def test_a_queue_stands_as_a_list_in_the_result() -> None:
 )  # fmt: skip
 def test_the_name_of_a_parameter_says_its_unit(name: str, unit: str) -> None:
     assert unit_of(name) == unit
+
+
+def test_every_parameter_of_a_robot_file_says_what_it_is() -> None:
+    rows = describe(RobotFile)
+    assert [row.name for row in rows if not row.doc] == []
+    assert [row.kind for row in rows if "tuple" in row.kind or "pluto_bt" in row.kind] == [], "types stand in words"

@@ -171,4 +171,10 @@ def _kind_text(declared: Any) -> str:
         return "one of: " + ", ".join(map(str, get_args(declared)))
     if _struct_in(declared) is not None:
         return "a table"
+    if get_origin(declared) is tuple and get_args(declared)[-1] is Ellipsis:
+        item = get_args(declared)[0]
+        struct = _struct_in(item)
+        return "a list of " + (f"tables ({', '.join(field.encode_name for field in msgspec.structs.fields(struct))})" if struct else _kind_text(item))
+    if get_origin(declared) is tuple and set(get_args(declared)) == {float}:
+        return f"[{', '.join(['number'] * len(get_args(declared)))}]"
     return str(declared).replace("typing.", "")
