@@ -38,7 +38,12 @@ class Parameter:
 
 
 def unit_of(name: str) -> str:
-    """The unit that the ending of a name says, or ""."""
+    """The unit that the ending of a name says, or "". That of `drift_dps_per_sqrt_s` is °/s/√s."""
+    above, per, below = name.partition("_per_")
+    if per:
+        root = "√" if below.startswith("sqrt_") else ""
+        below = below.removeprefix("sqrt_")
+        return f"{unit_of(above) or above.rsplit('_', 1)[-1]}/{root}{UNITS.get(below, below)}"
     return UNITS.get(name.rsplit("_", 1)[-1], "")
 
 
@@ -166,4 +171,10 @@ def _kind_text(declared: Any) -> str:
         return "one of: " + ", ".join(map(str, get_args(declared)))
     if _struct_in(declared) is not None:
         return "a table"
+    if get_origin(declared) is tuple and get_args(declared)[-1] is Ellipsis:
+        item = get_args(declared)[0]
+        struct = _struct_in(item)
+        return "a list of " + (f"tables ({', '.join(field.encode_name for field in msgspec.structs.fields(struct))})" if struct else _kind_text(item))
+    if get_origin(declared) is tuple and set(get_args(declared)) == {float}:
+        return f"[{', '.join(['number'] * len(get_args(declared)))}]"
     return str(declared).replace("typing.", "")
