@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Any
 
 import msgspec
@@ -46,5 +47,5 @@ class RunResult(msgspec.Struct, kw_only=True):
         return EXIT_CODES[self.result]
 
     def as_json(self) -> str:
-        """One line of JSON; blackboard values that JSON does not know stand as text."""
-        return msgspec.json.encode(self, enc_hook=str).decode()
+        """One line of JSON; queues stand as lists, other blackboard values that JSON does not know as text."""
+        return msgspec.json.encode(self, enc_hook=lambda value: list(value) if isinstance(value, deque) else str(value)).decode()

@@ -93,6 +93,7 @@ class Play:
         )  # fmt: skip
         events: list[Event] = []
         inputs = read_inputs(request, self._folder)
-        runner = make_runner(inputs, realtime=realtime, speed=speed, max_time_s=max_time_s, nodes=tuple(nodes), gateway=gateway, on_event=events.append)
+        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway}
+        runner = make_runner(inputs, nodes=tuple(nodes), on_event=events.append, **how)
         runner.run()
         return Run(runner, events)

@@ -1,6 +1,7 @@
 """One robot as a whole: THE table of modules, and the `System` that makes them, joins them and runs a mission.
 
-Everything that runs is a row of MODULES; equal due times run in this order. There is no module state: several systems fit one process.
+Everything that runs is a row of MODULES; equal due times run in this order: the world and the devices, then the pose, then the chain from
+below, so that a status reaches the top in one go; a command wakes each link on its way down. There is no module state: several systems fit one process.
 """
 
 from __future__ import annotations
@@ -18,7 +19,8 @@ from pluto_bt.gateway.listen import Address
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_file import RobotFile
-from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wait
+from pluto_bt.modules.robot_link import RobotLink
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wait, wall_ns
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.table import Module, in_start_order
@@ -26,7 +28,7 @@ from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.source import PlutoError
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees import Mission, load_mission
 
 # fmt: off
 MODULES: tuple[Module, ...] = (
@@ -43,10 +45,10 @@ MODULES: tuple[Module, ...] = (
     Module("marker",    "pluto_bt.modules.marker:Marker",         0.1,    "io",         device="marker", needs=("local",),              budget_ms=1.0),
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
            wakes=("ATRV2/Drive/Raw", "sick/timing", "Localization/Post_Pose")),
-    Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    needs=("motion",),                              budget_ms=20.0),
-    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
-    Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
+    Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
+    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
+    Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    needs=("motion",),                              budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
 )
 # fmt: on
@@ -70,7 +72,7 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
-    load: Callable[[str], Mission] | None = None
+    load: Callable[[str], Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
 
@@ -116,6 +118,7 @@ class System:
         self.simulator = Simulator(options.world, options.robot, options.seed, options.start)
         self.simulator.on_software_fault = self._on_software_fault
         self.ended: tuple[str, str, str] | None = None  # (result, reason, text) when something other than the mission ends the run
+        self.wall_time_s = 0.0  # from the first step to the last
         self._interrupt = threading.Event()
         self._parts: dict[str, Part] = {}
         self.inboxes = {link: Inbox(link, self._owner_rule(above)) for link, above in INBOXES.items()}
@@ -127,17 +130,12 @@ class System:
     # ------------------------------------------------------------------ making
 
     def _make_context(self) -> Context:
-        from pluto_bt.modules.robot_link import RobotLink
-
         context = Context(
             board=self.board, clock=self.clock, platform=self.options.robot, inboxes=self.inboxes, devices=self.simulator.devices,
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
+            order_module=self.order_module, joined=self,
         )  # fmt: skip
         self.robot = RobotLink(context)
-        context.extras.update(
-            system=self, simulator=self.simulator, trace=self.trace, robot=self.robot, parts=lambda: self.parts,
-            load=self.options.load, gateway=self.options.gateway,
-        )  # fmt: skip
         return context
 
     def _make_parts(self, rows: list[Module]) -> None:
@@ -151,7 +149,7 @@ class System:
         self.scheduler = Threads(parts, self.clock) if isinstance(self.clock, MonotonicClock) else Lockstep(parts, self.clock)
         for part in parts:
             for source in part.module.wakes:
-                kind, _, name = source.rpartition("inbox:")
+                _, _, name = source.rpartition("inbox:")
                 wake = self.scheduler.waker(part.row)
                 if "inbox:" in source:
                     self.inboxes[name].on_post(wake)
@@ -304,10 +302,12 @@ class System:
         """Run `mission` to its end, then bring the robot to rest. The outcome is in `ended` and in the executive."""
         self.executive.core.start(mission)
         self._start()
+        begun_ns = wall_ns()
         try:
             self._until(self._is_over)
             self._settle()
         finally:
+            self.wall_time_s = (wall_ns() - begun_ns) / NS
             if isinstance(self.scheduler, Threads):
                 self.scheduler.stop()
             for part in reversed(self._parts.values()):

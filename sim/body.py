@@ -96,10 +96,16 @@ class Body:
         return float(self._state[motion.ARC_SPEED]), float(self._state[motion.ARC_TURN_RATE])
 
     def hold(self, before: Pose, share: float) -> None:
-        """Undo the part of the last tick beyond `share` of it: the body has met something and stands; the wheels go on turning."""
+        """Undo the part of the last tick beyond `share` of it: the body has met something and stands.
+
+        The strong wheels of a skid-steer or differential base go on turning; the small motor of a car stalls, and its wheels with it
+        (that is how the car's notes find an obstacle: told to drive, and the speed is 0).
+        """
         speed, turn_rate = self.last_arc()
         self._state[:3] = motion.along_arc(before, speed, turn_rate, share * TICK_S)
         self._state[motion.PATH_LENGTH] -= abs(speed) * TICK_S * (1.0 - share)
         self._state[motion.BODY_DISTANCE] -= speed * TICK_S * (1.0 - share)
         self._state[motion.BODY_SPEED] = self._state[motion.BODY_TURN_RATE] = 0.0
+        if self.servo:
+            self._state[motion.SPEED_SETPOINT] = self._state[motion.WHEEL_SPEED] = 0.0
         self._read()

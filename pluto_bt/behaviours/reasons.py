@@ -17,6 +17,14 @@ class Reason(NamedTuple):
 
 
 REASONS: Final[dict[str, Reason]] = {
+    # ended by the run itself, not by a leaf: max-time, interrupted, and those of supervision
+    "base-lost": Reason("the base delivers nothing any more", "check the base, its cable and its power"),
+    "hung": Reason("a leaf or a module did not return", "look at the name in the message; a leaf's update() must return at once"),
+    "interrupted": Reason("the run was ended from the keyboard", "start it again"),
+    "leaf-error": Reason("a leaf raised an exception or returned no status", "see the node, file and line in the message"),
+    "max-time": Reason("the run has lasted as long as --max-time allows", "give it more time"),
+    "module-error": Reason("a module that is needed failed too often", "see its name and error in the message and in `pluto ps`"),
+    # of leaves
     "bad-command": Reason("a link of the chain refused the command", "see the status text of motion, avoidance and drive"),
     "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),
     "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
@@ -26,15 +34,19 @@ REASONS: Final[dict[str, Reason]] = {
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
     "lost": Reason("the position has become too uncertain", "bring the robot where its markers or its map can be seen"),
-    "max-time": Reason("the run has lasted as long as --max-time allows", "give it more time"),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
+    "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object"),
+    "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map"),
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
     "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
+    "nothing-to-resume": Reason("nothing was stopped, and no rectangle was ever set", "start the motion anew"),
     "odometry-stale": Reason("the base delivers no odometry", "check the base"),
     "outside-map": Reason("the goal, or the straight way to it, leaves the mapped area", "choose a goal inside the mapped area, in straight reach"),
+    "outside-rectangle": Reason("the goal or the start is outside the rectangle", "choose a goal inside, or set another rectangle"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
     "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
     "stuck": Reason("goto comes no nearer to its goal", "choose a goal with a clear way, or plan the way with NavigateTo"),
+    "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near"),
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }

@@ -43,7 +43,7 @@ def draw(path: str, runner: Runner) -> None:
 def _frame(world: World, runner: Runner) -> tuple[float, float, float, float]:
     """What the picture shows: the world, and the path if it leaves it, with a margin."""
     x_min, y_min, x_max, y_max = world.bounds_m()
-    track = np.array([point.pose[:2] for point in runner.system.track.points] or [[x_min, y_min]])
+    track = np.array([point.pose[:2] for point in runner.system.track.points] or [(x_min, y_min)])
     low = np.minimum([x_min, y_min], track.min(axis=0))
     high = np.maximum([x_max, y_max], track.max(axis=0))
     margin = 0.03 * float(np.max(high - low)) + 0.3
@@ -89,6 +89,7 @@ def _draw_shape(axes: Any, shape: Shape) -> None:
         axes.add_patch(_circle(shape.points[0], shape.radius_m, WALL))
     else:
         fill = "white" if shape.kind == "hole" else WALL
+        fill = "none" if shape.absent else fill
         axes.fill(*shape.points.T, facecolor=fill, edgecolor=WALL, linewidth=1, hatch="///" if shape.kind == "hole" else None, **style)
 
 

@@ -87,7 +87,8 @@ def summary(result: RunResult) -> str:
         head,
         f"  mission    {result.mission} in {result.world} with {result.platform}, seed {result.seed}",
         f"  time       {result.sim_time_s:.1f} s simulated in {result.wall_time_s:.2f} s (× {speed:.0f}), {result.ticks} ticks",
-        f"  driven     {result.distance_m:.2f} m, collisions {result.collisions}, hit by others {result.hit_by}, nearest {_metres(result.min_clearance_m)}",
+        f"  driven     {result.distance_m:.2f} m, collisions {result.collisions}, hit by others {result.hit_by}, "
+        f"nearest {_metres(result.min_clearance_m)}",
     ]
     if result.final_pose is not None:
         lines.append(f"  ended at   {_pose(result.final_pose)}" + (f", believed {_pose(result.estimated_pose)}" if result.estimated_pose else ""))

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 
-from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.gateway import inquiries, replies, requests
 from pluto_bt.gateway.leases import Held, Leases
 from pluto_bt.gateway.outcomes import Outcomes
 from pluto_bt.gateway.port import RefusedError, RobotPort
 from pluto_bt.gateway.replies import AnyReply, Error, LeaseState, Ok, with_id
+from pluto_bt.gateway.requests import actuator
 from pluto_bt.gateway.runs import Runs
-from pluto_bt.gateway.wire import Answer, Ask
+from pluto_bt.gateway.wire import Answer, Ask, source_of
 
 _MOVES = {"start", "resume"}
 
@@ -45,12 +45,12 @@ class Desk:
         reply: AnyReply = Ok(id=request.id)
         try:
             if isinstance(request, requests.Estop):
-                self._port.estop(_source(ask), request.reason)
+                self._port.estop(source_of(ask), request.reason)
             else:
-                self._port.stop(_source(ask))
+                self._port.stop(source_of(ask))
         except Exception as error:  # the one who stops must hear that it did not work, and the link must live on
             reply = Error(id=request.id, code="internal", text=f"the robot's stop raised {type(error).__name__}: {error}")
-        self._stopped.append(_source(ask))
+        self._stopped.append(source_of(ask))
         self._send(Answer(ask.client, "stop", reply))
         return True
 
@@ -125,12 +125,12 @@ class Desk:
             case requests.ShowModules():
                 return replies.Modules(state=port.modules())
             case requests.ModuleOp():
-                port.module(request.name, request.op, _source(ask))
+                port.module(request.name, request.op, source_of(ask))
             case requests.Release():
                 self._require_lease(key, now_s)
-                port.release_estop(_source(ask))
+                port.release_estop(source_of(ask))
             case requests.Cancel():
-                self._cancel(request.run, key, now_s, _source(ask))
+                self._cancel(request.run, key, now_s, source_of(ask))
             case _:
                 raise RefusedError("invalid", f"the executive does not answer {type(request).__name__}")
         return Ok()
@@ -151,9 +151,9 @@ class Desk:
         outcome = self._outcomes.begin(ask.session, request)
         try:
             if isinstance(request, requests.Run):
-                reply = replies.Ack(id=request.id, run=self._runs.start(key, request, outcome, _source(ask)))
+                reply = replies.Ack(id=request.id, run=self._runs.start(key, request, outcome, source_of(ask)))
             else:
-                self._port.post_command(request.target, _actuator(request, now_s), _source(ask))
+                self._port.post_command(request.target, actuator(request, now_s), source_of(ask))
                 reply = Ok(id=request.id)
         except BaseException:
             self._outcomes.forget(ask.session, request)  # nothing was done: the same id may be tried again
@@ -177,7 +177,7 @@ class Desk:
     def _stop_again(self, stops: int, ask: Ask) -> None:
         """A stop that came while we acted may have been undone by what we did: say it again."""
         if stops != self.stops:
-            self._port.stop(_source(ask))
+            self._port.stop(source_of(ask))
 
     def _lease(self, request: requests.Lease, key: str, ask: Ask, now_s: float) -> LeaseState:
         name = ask.name or ask.session or key
@@ -229,7 +229,7 @@ class Desk:
         if request.op == "list":
             return replies.Mission(state=port.mission_state(), names=tuple(port.mission_names()))
         if request.op != "state":
-            port.mission(request.op, request.name, request.text, _source(ask))
+            port.mission(request.op, request.name, request.text, source_of(ask))
         if request.op in _MOVES:
             self._stop_again(stops, ask)
         return replies.Mission(state=port.mission_state()) if request.op in ("state", "fetch") else Ok()
@@ -249,14 +249,3 @@ class Desk:
         client = self._client_of.get(key)
         if client is not None:
             self._send(Answer(client, "later", reply))
-
-
-def _source(ask: Ask) -> str:
-    return ask.name or ask.session or f"client {ask.client}"
-
-
-def _actuator(request: requests.Command, now_s: float) -> ActuatorState:
-    """The command as the chain takes it, stamped with its arrival."""
-    (p0, p1), (v0, v1), (a0, a1) = request.position, request.velocity, request.acceleration
-    return ActuatorState(now_s, request.flags, (p0, p1), (v0, v1), (a0, a1), request.force)
-

@@ -14,6 +14,7 @@ from typing import Any
 
 from lxml import etree
 
+from pluto_bt.gateway.complaint import complaint
 from pluto_bt.gateway.limits import Limits
 
 _SPACE = re.compile(rb"[ \t\r\n]*")
@@ -21,12 +22,7 @@ _NAME_START = re.compile(rb"[A-Za-z_:\x80-\xff]")
 _DECLARATION = re.compile(
     rb"""<\?xml\s+version\s*=\s*["']1\.[0-9]["'](?:\s+encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["'])?(?:\s+standalone\s*=\s*["'](?:yes|no)["'])?\s*\?>"""
 )
-_HARMLESS = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>", re.DOTALL)
-_NO_TAG = re.compile(rb"<[^A-Za-z_:/?\x80-\xff]")
-_BAD_NAME = 68  # libxml2: a tag that does not begin with a name
 _DECLARATION_BYTES = 256
-_ENTITY_CODES = frozenset({26, 27, 28})  # libxml2: undeclared entity (error, warning), unparsed entity
-_CODES = {81: "bad-encoding", 6: "bad-encoding", 32: "bad-encoding", 64: "restricted-xml", 114: "too-deep"}
 
 
 class FramingError(Exception):
@@ -204,15 +200,7 @@ class Framer:
 
     def _syntax(self, error: etree.XMLSyntaxError) -> FramingError:
         """libxml2's complaint, under our code and at the stream's position."""
-        number = int(getattr(error, "code", 0))
-        code = _CODES.get(number, "not-well-formed")
-        bad_tag = _NO_TAG.search(_HARMLESS.sub(b"", self._raw)) if number == _BAD_NAME else None
-        if number in _ENTITY_CODES or (bad_tag is not None and bad_tag[0] == b"<!"):
-            code = "restricted-xml"
-        text = re.sub(r", line \d+, column \d+.*", "", (error.msg or "not well-formed").strip(), flags=re.DOTALL).strip()
-        text = re.sub(r" line \d+", "", text)
-        if code == "restricted-xml":
-            text += "; no document type, entity (but the five predefined) or processing instruction may stand in a message"
+        code, text = complaint(error, self._raw)
         line, column = error.position
         return self._error(code, text, line, column)
 

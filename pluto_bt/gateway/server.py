@@ -29,7 +29,8 @@ class ClientProtocol(asyncio.Protocol):
         self._is_full = False
         self._at_eof = False
         self._is_ending = False
-        self._timer: asyncio.TimerHandle | None = None
+        self._timer: asyncio.Handle | None = None
+        self._timer_due_s = 0.0  # kept here, because uvloop's handles do not tell it
 
     # asyncio's calls ---------------------------------------------------------------------------------------------
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -107,10 +108,10 @@ class ClientProtocol(asyncio.Protocol):
 
     def _wake_at(self, due_s: float) -> None:
         if self._timer is not None:
-            if self._timer.when() <= due_s and not self._timer.cancelled():
+            if self._timer_due_s <= due_s and not self._timer.cancelled():
                 return
             self._timer.cancel()
-        self._timer = self._loop.call_at(due_s, self._on_timer)
+        self._timer, self._timer_due_s = self._loop.call_at(due_s, self._on_timer), due_s
 
     def _on_timer(self) -> None:
         self._timer = None

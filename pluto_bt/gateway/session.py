@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from pluto_bt.gateway import requests
 from pluto_bt.gateway.framing import Message
 from pluto_bt.gateway.newest import Newest
+from pluto_bt.gateway.parse import parse
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
 from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, encode, with_id
@@ -67,7 +68,7 @@ class Session:
             return
         id = message.element.get("id", "")[:128]
         try:
-            request = requests.parse(message)
+            request = parse(message)
             if self._may_speak(request):
                 self._do(request, now_s)
         except RefusedError as refusal:

@@ -31,6 +31,11 @@ class Ask(Frame, frozen=True):
     request: AnyRequest
 
 
+def source_of(ask: Ask) -> str:
+    """What logs call the client."""
+    return ask.name or ask.session or f"client {ask.client}"
+
+
 class Gone(Frame, frozen=True):
     """Up: a client is no more."""
 

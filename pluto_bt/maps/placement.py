@@ -13,7 +13,7 @@ Points = NDArray[np.float64]
 def placed_outline(outline_m: Points, pose: tuple[float, float, float]) -> Points:
     """The outline (n, 2) in the map frame for a robot at pose (x m, y m, theta rad)."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
-    return outline_m @ np.array([[cos, sin], [-sin, cos]]) + np.array(pose[:2])
+    return np.asarray(outline_m @ np.array([[cos, sin], [-sin, cos]]) + np.array(pose[:2]))
 
 
 def what_stands_at(world: World, outline_m: Points) -> str:

@@ -27,8 +27,8 @@ class Avoid:
         self._link = Link(context, "avoid", "avoidance")
         self._board, self._clock = context.board, context.clock
         self._drive = context.inboxes["drive"]
-        self._parameters = getattr(platform, "avoid", None) or AvoidParameters()
-        self._skill = Skill(platform, self._parameters, getattr(platform, "drive", None) or DriveParameters())
+        self._parameters = context.parameters(AvoidParameters)
+        self._skill = Skill(platform, self._parameters, context.parameters(DriveParameters))
         self._mount = LaserMount(context.board, platform)
         self._drive_status, self._drive_command = below(context, "drive")
         self._pose, self._dead = newest(context, "Localization/Pose"), newest(context, DEAD_RECKONING)

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeVar
+
+import msgspec
 
 from drivers.records import Record
 from pluto_bt.blackboard import Blackboard, Inbox
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
+from pluto_bt.modules.post_box import PostBox
 from pluto_bt.runtime import Clock
+
+if TYPE_CHECKING:
+    from pluto_bt.system import System
+
+T = TypeVar("T", bound=msgspec.Struct)
 
 
 class Device(Protocol):
@@ -25,12 +33,14 @@ class Context:
     """Everything a module may reach.
 
     Attributes:
-        platform: the robot file; module tables are attributes of it too (`platform.drive`, `platform.avoid`, …).
+        platform: the robot file.
         inboxes: by link name: base, drive, avoid, motion, wrist.
         devices: by name as in `sim.Simulator.devices`.
         map: the a-priori map: the world's own unless `--map` says otherwise.
         say: (level, code, source, text) → a line in `events`.
         is_running: whether the module of that name is started (a stopped one shows −10).
+        posts: where improved poses wait for `local`.
+        order_module: (name, run) → start or stop a module.
     """
 
     board: Blackboard
@@ -42,4 +52,18 @@ class Context:
     say: Callable[[str, str, str, str], None]
     is_running: Callable[[str], bool]
     start_pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    extras: dict[str, Any] = field(default_factory=dict)
+    posts: PostBox = field(default_factory=PostBox)
+    order_module: Callable[[str, bool], None] = lambda name, run: None
+    joined: System | None = None
+
+    def parameters(self, kind: type[T]) -> T:
+        """The table of the robot file that `kind` declares; its defaults where the file has none."""
+        tables = (getattr(self.platform, field) for field in self.platform.__struct_fields__)
+        return next((table for table in tables if type(table) is kind), None) or kind()
+
+    @property
+    def system(self) -> System:
+        """The system that this module is part of. Raises RuntimeError where a test joined none."""
+        if self.joined is None:
+            raise RuntimeError("this module needs a system around it")
+        return self.joined

@@ -32,7 +32,7 @@ class Dmu(Relay[InertialRecord]):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context, "dmu", "dmu/raw", InertialRecord, _check, imu_state)
-        p: DmuParameters = getattr(context.platform, "dmu", None) or DmuParameters()
+        p = context.parameters(DmuParameters)
         self._parameters = p
         self._state = context.board.publisher("dmu/state", "dmu")
         self._odometry = context.board.reader("ATRV2/Drive/Raw")

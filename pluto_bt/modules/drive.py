@@ -21,7 +21,7 @@ class Drive:
         self._link = Link(context, "drive", "drive")
         self._clock = context.clock
         self._base = context.inboxes["base"]
-        self._skill = Skill(context.platform, getattr(context.platform, "drive", None) or DriveParameters())
+        self._skill = Skill(context.platform, context.parameters(DriveParameters))
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._sonar = newest(context, "ATRV2/Sonar")
         self._bumper = newest(context, "ATRV2/Bumper")

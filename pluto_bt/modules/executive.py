@@ -10,10 +10,9 @@ import msgspec
 from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, NodeState, Pose, TreeState
 from pluto_bt.modules.context import Context
 from pluto_bt.runtime.supervision import Part
-from pluto_bt.runtime.trace import Trace
+from pluto_bt.trees import Mission
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
-from pluto_bt.trees import Mission
 
 SHOW_MODULES_EVERY = 10
 
@@ -24,8 +23,7 @@ class Executive:
     def __init__(self, context: Context) -> None:
         board = context.board
         self._clock = context.clock
-        self._trace: Trace = context.extras["trace"]
-        self._parts: Callable[[], tuple[Part, ...]] = context.extras["parts"]
+        self._system = context.system
         self._mission = board.publisher("mission/state", "executive")
         self._tree = board.publisher("tree", "executive")
         self._events = board.publisher("events", "executive")
@@ -33,7 +31,7 @@ class Executive:
         self._pose = board.reader("Localization/Pose")
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
-        self.core = Core(context.extras["robot"], lambda level, code, text: self.say(level, code, "mission", text))
+        self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
         self._shown: MissionState | None = None
         self._shown_statuses = ""
         self._steps = 0
@@ -59,7 +57,7 @@ class Executive:
                 self._tree.put(TreeState(now_s, ticked.ticks, tuple(node_states(ticked.mission))), now_s)
         self._show_mission(now_s)
         if self._steps % SHOW_MODULES_EVERY == 0:
-            self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._parts())), now_s)
+            self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._system.parts)), now_s)
         self._steps += 1
         self.flush(now_s)
 
@@ -73,7 +71,7 @@ class Executive:
     def _record(self, ticked: Activity, statuses: str) -> None:
         sample = self._pose()
         pose = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
-        self._trace.line({"t": self._clock.now_ns(), "tick": ticked.ticks, "run": ticked.number, "nodes": statuses, "pose": pose})
+        self._system.trace.line({"t": self._clock.now_ns(), "tick": ticked.ticks, "run": ticked.number, "nodes": statuses, "pose": pose})
 
     def _show_mission(self, now_s: float) -> None:
         activity = self.core.mission

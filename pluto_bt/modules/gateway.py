@@ -14,7 +14,7 @@ class Gateway:
 
     def __init__(self, context: Context) -> None:
         """Raises: InputError if the address that was asked for cannot be had; the default one in use is only a warning."""
-        asked: Address | None = context.extras["gateway"]
+        asked: Address | None = context.system.options.gateway
         self._link: GatewayLink | None = GatewayLink(GatewayPort(context), asked or Address())
         self._trouble = ""
         try:

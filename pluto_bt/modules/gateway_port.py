@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
@@ -11,25 +12,30 @@ from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
-from pluto_bt.trees.executive import PAUSED, RUNNING, Activity
 from pluto_bt.trees import Mission, MissionError
-
-if TYPE_CHECKING:
-    from pluto_bt.system import System
+from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}
+STATE_OF_END = {"preempted": "preempted", "timeout": "timeout"}
+ERRANDS_KEPT = 64
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
+
+
+class Errand(NamedTuple):
+    """A run of a single node, and when its time is over."""
+
+    activity: Activity
+    ends_s: float
 
 
 class GatewayPort:
     """Implements `RobotPort` over a `System`."""
 
     def __init__(self, context: Context) -> None:
-        self._system: System = context.extras["system"]
-        self._load_text: Callable[[str], Mission] = context.extras["load"]
+        self._system = context.system
         self._loaded: Mission | None = None
-        self._errands: dict[str, Activity] = {}
+        self._errands: dict[str, Errand] = {}
         self._estop: str | None = None
 
     @property
@@ -95,21 +101,31 @@ class GatewayPort:
             fault = error.faults[0]
             code = "unknown-node" if fault.code == "unknown-node" else "bad-value"
             raise RefusedError(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
-        errand = self._system.executive.core.start_errand(mission)
-        self._errands[str(errand.number)] = errand
-        return str(errand.number)
+        activity = self._system.executive.core.start_errand(mission)
+        while len(self._errands) >= ERRANDS_KEPT:
+            del self._errands[next(iter(self._errands))]
+        self._errands[str(activity.number)] = Errand(activity, self.now_s() + deadline_s if deadline_s > 0 else math.inf)
+        return str(activity.number)
 
     def run_state(self, run: str) -> RunState:
-        """How an errand stands."""
-        errand = self._errands[run]
-        if errand.state == "aborted":
-            return RunState("preempted" if errand.reason == "preempted" else "cancelled", errand.reason)
-        outputs = tuple(errand.mission.outputs().items()) if errand.is_over else ()
-        return RunState(RUN_STATES[errand.state], errand.reason, errand.text, outputs)
+        """How an errand stands; one whose deadline is over is ended here."""
+        errand = self._errands.get(run)
+        if errand is None:
+            return RunState("cancelled", "forgotten", f"only the last {ERRANDS_KEPT} runs are remembered")
+        activity = errand.activity
+        if not activity.is_over and self.now_s() >= errand.ends_s:
+            self._system.executive.core.end_errand(activity, "timeout")
+            return RunState("timeout", "timeout", "the deadline is over")
+        if activity.state == ABORTED:
+            return RunState(STATE_OF_END.get(activity.reason, "cancelled"), activity.reason)
+        outputs = tuple(activity.mission.outputs().items()) if activity.is_over else ()
+        return RunState(RUN_STATES[activity.state], activity.reason, activity.text, outputs)
 
     def cancel(self, run: str, reason: str) -> None:
         """End an errand with zero velocity."""
-        self._system.executive.core.end_errand(self._errands[run], reason)
+        errand = self._errands.get(run)
+        if errand is not None:
+            self._system.executive.core.end_errand(errand.activity, reason)
 
     def mission_state(self) -> MissionState:
         """The mission."""
@@ -171,7 +187,7 @@ class GatewayPort:
             raise RefusedError("estopped", f"emergency stop ({self._estop}); release it first")
 
     def _load(self, text: str) -> Mission:
-        mission = self._load_text(text)
+        mission = self._system.options.load(text)
         mission.attach(self._system.robot)
         return mission
 

@@ -58,9 +58,7 @@ class Link:
     def release(self) -> None:
         """The command -1: stop this link's own module, as an operator would."""
         self.is_running = False
-        order_module = self._context.extras.get("order_module")
-        if order_module is not None:
-            order_module(self.name, False)
+        self._context.order_module(self.name, False)
 
 
 def below(context: Context, topic: str) -> tuple[Callable[[], FVectorState | None], Callable[[], ActuatorState | None]]:

@@ -23,7 +23,7 @@ from pluto_bt.blackboard.messages import Pose, ScanTiming
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import LaserMount, laser_pose
 from pluto_bt.modules.motion_sources import MotionSources
-from pluto_bt.modules.post_box import post_box, refusal
+from pluto_bt.modules.post_box import refusal
 
 
 class LocalParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -50,12 +50,12 @@ class Local:
 
     def __init__(self, context: Context) -> None:
         board = context.board
-        p: LocalParameters = getattr(context.platform, "local", None) or LocalParameters()
+        p = context.parameters(LocalParameters)
         self._parameters = p
         self._say = context.say
         self._sources = MotionSources(context, p.step_noise())
         self._mount = LaserMount(context)
-        self._box = post_box(context)
+        self._box = context.posts
         self.track = Track(context.start_pose)
         self.dropped = 0  # posts and scans whose stamp is not in the history
         self._setter_s = 0.0

@@ -15,7 +15,6 @@ from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import MarkerState, Pose
 from pluto_bt.blackboard.poses import pose_at
 from pluto_bt.modules.context import Context
-from pluto_bt.modules.post_box import post_box
 
 
 class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -27,20 +26,26 @@ class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     heading_pull: Annotated[float, Meta(ge=0, le=1, description="share of the heading's error that one accepted marker takes away")] = 0.05
     position_noise_m: Annotated[float, Meta(gt=0, description="standard deviation of a marker's position")] = 0.03
     heading_noise_deg: Annotated[float, Meta(gt=0, description="standard deviation of a marker's heading")] = 2.0
+    far_m: Annotated[float, Meta(gt=0, description="from the estimate; an accepted marker farther off must be confirmed by the next")] = 0.5
 
 
 class Marker:
     """`car/marker` with the gate's verdict for each reading. An accepted one is posted as a robot pose at its stamp: the position
-    is the camera's, the heading is the estimate, pulled a little towards the camera's, else the gyro's drift would end long runs."""
+    is the camera's, the heading is the estimate, pulled a little towards the camera's, else the gyro's drift would end long runs.
+
+    The gate lets nonsense pass when there is nothing to compare it with: the first marker, or one after a long shadow. So an accepted
+    marker far from the estimate moves the pose only if the accepted one before was far as well.
+    """
 
     def __init__(self, context: Context) -> None:
         self._device = context.devices["marker"]
         self._board = context.board
         self._state = context.board.publisher("car/marker", "marker")
-        self._box = post_box(context)
+        self._box = context.posts
         self._start_rad = context.start_pose[2]
-        p: MarkerParameters = getattr(context.platform, "marker", None) or MarkerParameters()
+        p = context.parameters(MarkerParameters)
         self._parameters = p
+        self._was_far = False
         self.gate = MarkerGate(p.min_quality, math.radians(p.max_heading_error_deg), p.max_speed_mps)
 
     def start(self, now_s: float) -> None:
@@ -60,8 +65,17 @@ class Marker:
         heading_rad = self._start_rad if pose is None else pose.pose[3]
         refused = self.gate.judge(r.stamp_s, (r.x_m, r.y_m, r.theta_rad), r.quality, heading_rad)
         self._state.put(MarkerState(r.stamp_s, r.marker, r.x_m, r.y_m, r.theta_rad, r.quality, refused, self.gate.accepted_count), now_s)
-        if not refused:
+        if not refused and self._is_credible(r, pose):
             self._post(r, heading_rad, 0.0 if pose is None else pose.covariance[8])
+
+    def _is_credible(self, r: MarkerRecord, pose: Pose | None) -> bool:
+        """True near the estimate, or for the second far one in a row."""
+        if pose is None:
+            return True
+        sigma_m = math.sqrt(max(0.0, pose.covariance[0] + pose.covariance[4]))
+        is_far = math.hypot(r.x_m - pose.pose[0], r.y_m - pose.pose[1]) > max(self._parameters.far_m, 3.0 * sigma_m)
+        was_far, self._was_far = self._was_far, is_far
+        return was_far or not is_far
 
     def _pose_then(self, stamp_s: float) -> Pose | None:
         """The estimate when the picture was taken; the newest one if that is not in the history."""

@@ -19,7 +19,7 @@ class Motion:
         self._link = Link(context, "motion", "motion")
         self._clock = context.clock
         self._avoid = context.inboxes["avoid"]
-        self._skill = Skill(getattr(context.platform, "motion", None) or MotionParameters())
+        self._skill = Skill(context.parameters(MotionParameters))
         self._avoid_status, self._avoid_command = below(context, "avoidance")
         self._sent: ActuatorState | None = None
 

@@ -12,7 +12,6 @@ from collections import deque
 from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.inbox import WRONG_STATE
 from pluto_bt.blackboard.messages import Pose
-from pluto_bt.modules.context import Context
 
 CONFLICT = "conflict"
 BAD_VALUE = "bad-value"
@@ -62,11 +61,3 @@ class PostBox:
             posts = list(self._posts)
             self._posts.clear()
         return posts
-
-
-def post_box(context: Context) -> PostBox:
-    """The one post box of a system."""
-    box = context.extras.setdefault("post_box", PostBox())
-    if not isinstance(box, PostBox):
-        raise TypeError("context.extras['post_box'] is not a PostBox")
-    return box

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from operator import attrgetter
 from typing import Any, get_args, get_origin
 
 import msgspec
@@ -12,6 +13,7 @@ from pluto_bt.blackboard.messages import LaserPose, Message, Pose
 
 POSE_NAMES = ("x", "y", "z", "theta", "phi", "psi", "pan", "tilt")
 SCALARS = (int, float, bool, str)
+MOST_ITEMS = 16  # of a vector without fixed length: as many sonars as a ring has
 Getter = Callable[[Any], Any]
 
 
@@ -19,20 +21,23 @@ def fields_of(kind: type[Message]) -> dict[str, Getter]:
     """The numbers and words of a message by name; a tuple's items carry their place, those of a pose their letter."""
     found: dict[str, Getter] = {}
     for field in msgspec.structs.fields(kind):
-        name, declared = field.name, field.type
-        if declared in SCALARS:
-            found[name] = lambda value, name=name: getattr(value, name)
-        elif get_origin(declared) is tuple and get_args(declared)[0] in SCALARS:
-            is_pose = name == "pose" and kind in (Pose, LaserPose)
-            for i, word in enumerate(_item_names(declared, is_pose)):
-                full = word if is_pose else f"{name}_{word}"
-                found[full] = lambda value, name=name, i=i: getattr(value, name)[i]
+        if field.type in SCALARS:
+            found[field.name] = attrgetter(field.name)
+        elif get_origin(field.type) is tuple and get_args(field.type)[0] in SCALARS:
+            is_pose = field.name == "pose" and kind in (Pose, LaserPose)
+            for i, word in enumerate(_item_names(field.type, is_pose)):
+                found[word if is_pose else f"{field.name}_{word}"] = _item(field.name, i)
     return found
+
+
+def _item(name: str, i: int) -> Getter:
+    """Reads one item of a tuple field. Raises IndexError where the tuple is shorter."""
+    return lambda value: getattr(value, name)[i]
 
 
 def _item_names(declared: Any, is_pose: bool) -> Iterable[str]:
     arguments = get_args(declared)
-    count = 4 if arguments[-1] is Ellipsis else len(arguments)  # the chain's vectors have at most four elements
+    count = MOST_ITEMS if arguments[-1] is Ellipsis else len(arguments)
     return POSE_NAMES[:count] if is_pose else [str(i) for i in range(count)]
 
 

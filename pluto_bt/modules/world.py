@@ -12,12 +12,11 @@ class World:
     """Steps `sim.Simulator`; the first row of the table, so that all others see the world as it is now."""
 
     def __init__(self, context: Context) -> None:
-        self._simulator = context.extras["simulator"]
+        self._simulator = context.system.simulator
         self._clock = context.clock
         self._state = context.board.publisher("world/state", "world")
-        self._flags = {
-            topic.name: context.board.publisher(topic.name, "world") for topic in context.board.topics if topic.writer == "world" and topic.type is Flag
-        }
+        flags = [topic.name for topic in context.board.topics if topic.writer == "world" and topic.type is Flag]
+        self._flags = {name: context.board.publisher(name, "world") for name in flags}
         self._simulator.on_set_topic = self._set_topic
         self._steps = 0
 

@@ -38,7 +38,12 @@ class Parameter:
 
 
 def unit_of(name: str) -> str:
-    """The unit that the ending of a name says, or ""."""
+    """The unit that the ending of a name says, or "". That of `drift_dps_per_sqrt_s` is °/s/√s."""
+    above, per, below = name.partition("_per_")
+    if per:
+        root = "√" if below.startswith("sqrt_") else ""
+        below = below.removeprefix("sqrt_")
+        return f"{unit_of(above) or above.rsplit('_', 1)[-1]}/{root}{UNITS.get(below, below)}"
     return UNITS.get(name.rsplit("_", 1)[-1], "")
 
 
@@ -79,7 +84,8 @@ def _value(declared: Any, raw: Any, locate: Locate, faults: Faults, path: tuple[
         return msgspec.convert(raw, declared, strict=True)
     except msgspec.ValidationError as error:
         message = str(error).replace("`", "").partition(" - at ")[0]
-        faults.error(locate(path), "bad-value", f'{".".join(path)}: {message[0].lower()}{message[1:]}', expected=_kind_text(declared), found=_shown(raw))
+        what = f"{'.'.join(path)}: {message[0].lower()}{message[1:]}"
+        faults.error(locate(path), "bad-value", what, expected=_kind_text(declared), found=_shown(raw))
         return _FAULTY
 
 
@@ -107,7 +113,8 @@ def override(table: dict[str, Any], settings: Sequence[str], kind: type[msgspec.
             continue
         known = [row.name for row in describe(kind)]
         if name not in known:
-            faults.error(place, "unknown-parameter", f'unknown parameter "{name}"', found=name, mend=did_you_mean(name, known) or "see `pluto nodes` and docs")
+            mend = did_you_mean(name, known) or "docs/platforms.md lists them"
+            faults.error(place, "unknown-parameter", f'unknown parameter "{name}"', found=name, mend=mend)
             continue
         *parents, leaf = name.split(".")
         inner = table
@@ -164,4 +171,10 @@ def _kind_text(declared: Any) -> str:
         return "one of: " + ", ".join(map(str, get_args(declared)))
     if _struct_in(declared) is not None:
         return "a table"
+    if get_origin(declared) is tuple and get_args(declared)[-1] is Ellipsis:
+        item = get_args(declared)[0]
+        struct = _struct_in(item)
+        return "a list of " + (f"tables ({', '.join(field.encode_name for field in msgspec.structs.fields(struct))})" if struct else _kind_text(item))
+    if get_origin(declared) is tuple and set(get_args(declared)) == {float}:
+        return f"[{', '.join(['number'] * len(get_args(declared)))}]"
     return str(declared).replace("typing.", "")

@@ -92,7 +92,8 @@ class Avoid:
         """Look, decide, and give the command for drive if it changed."""
         dt_s, self._last_s = now_s - self._last_s, now_s
         if senses.dead is not None:
-            self.sight.look(senses.view, senses.sonar, senses.dead, now_s)
+            with_laser = self._kind is None or bool(self._kind[0] & Avoidance.LASER)
+            self.sight.look(senses.view, senses.sonar, senses.dead, with_laser, now_s)
         if self.command is None or self.verdict.reason == reasons.STOPPED:
             return None
         if self._kind is None:

@@ -16,7 +16,8 @@ class AvoidParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     reach_m: Annotated[Positive, Meta(description="obstacles nearer than this are looked at (the manual's 3 m)")] = 3.0
     memory_s: Annotated[NotNegative, Meta(description="how long what stands outside the laser's field of view is remembered")] = 30.0
     walker_memory_s: Annotated[NotNegative, Meta(description="how long what walked out of the field of view is remembered")] = 2.0
-    sonar_memory_s: Annotated[NotNegative, Meta(description="how long an echo that the laser does not explain is remembered")] = 1.0
+    sonar_memory_s: Annotated[NotNegative, Meta(description="how long an echo is remembered where the laser is not asked")] = 8.0
+    open_echo_memory_s: Annotated[NotNegative, Meta(description="how long an echo that the laser does not explain is remembered beside it")] = 1.0
     margin_m: Annotated[NotNegative, Meta(description="distance kept between the outline and what stands")] = 0.08
     moving_margin_m: Annotated[NotNegative, Meta(description="distance kept from what moves")] = 0.25
     laser_stale_s: Annotated[Positive, Meta(description="a scan taken longer ago than this is not trusted")] = 0.6

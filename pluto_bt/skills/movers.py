@@ -9,6 +9,7 @@ from pluto_bt.maps.kernel import kernel
 from pluto_bt.skills.outline import Array, Planar
 
 Mask = NDArray[np.bool_]
+Beams = NDArray[np.intp]
 CAME_CLOSER_M = 0.12  # a beam so much shorter than the scan before allows ends on something that moved there
 APART_M = 0.3  # neighbouring beams that differ more end on different things
 WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its visible part shifts as we pass
@@ -21,10 +22,10 @@ class Movers:
     """Follows pieces from scan to scan. Velocities are in the frame of the points."""
 
     def __init__(self) -> None:
-        self._centres = np.zeros((0, 2))
+        self._last: tuple[Array, Beams] = (np.zeros((0, 2)), np.zeros(0, dtype=np.intp))
         self._stamp_s = -np.inf
 
-    def velocities(self, points: Array, beams: NDArray[np.intp], moved: Mask, stamp_s: float) -> tuple[Mask, Array]:
+    def velocities(self, points: Array, beams: Beams, moved: Mask, stamp_s: float) -> tuple[Mask, Array]:
         """Which points belong to something that moves, and its velocity (0 where it was not seen before).
 
         Args:
@@ -32,44 +33,51 @@ class Movers:
             beams: (n,) the number of each point's beam.
             moved: (n,) whether the beam ends in what was free space.
         """
-        n = len(points)
-        velocity = np.zeros((n, 2))
-        if n == 0:
-            self._centres, self._stamp_s = np.zeros((0, 2)), stamp_s
-            return moved, velocity
-        steps = np.hypot(points[1:, 0] - points[:-1, 0], points[1:, 1] - points[:-1, 1])
-        starts = np.concatenate(([0], 1 + np.flatnonzero((steps > APART_M) | (np.diff(beams) > 3))))
-        sizes = np.diff(np.append(starts, n))
-        centres = np.add.reduceat(points, starts, axis=0) / sizes[:, None]
-        last = np.append(starts[1:], n) - 1
-        widths = np.hypot(points[last, 0] - points[starts, 0], points[last, 1] - points[starts, 1])
+        last, self._last = self._last, (points, beams)
+        dt_s, self._stamp_s = stamp_s - self._stamp_s, stamp_s
+        velocity = np.zeros((len(points), 2))
+        if np.count_nonzero(moved) < MOVED_BEAMS:
+            return np.zeros(len(points), dtype=bool), velocity
+        starts, sizes, centres, widths = _pieces(points, beams)
         is_mover = (np.add.reduceat(moved.astype(np.intp), starts) >= MOVED_BEAMS) & (widths < WIDEST_M)
+        before = np.zeros((0, 2))
+        if len(last[0]) and 0.0 < dt_s < 1.0:
+            _, _, before, widths_before = _pieces(*last)
+            before = before[widths_before < WIDEST_M]
         piece_velocity = np.zeros((len(starts), 2))
         for i in np.flatnonzero(is_mover).tolist():
-            piece_velocity[i] = self._velocity(centres[i], stamp_s)
-        self._centres, self._stamp_s = centres[widths < WIDEST_M], stamp_s
+            piece_velocity[i] = _velocity(centres[i], before, dt_s)
         piece = np.repeat(np.arange(len(starts)), sizes)
-        velocity[:] = piece_velocity[piece]
-        return is_mover[piece], velocity
+        return is_mover[piece], piece_velocity[piece]
 
-    def _velocity(self, centre: Array, stamp_s: float) -> Array:
-        """From the nearest piece of the scan before; 0 if none was near."""
-        dt_s = stamp_s - self._stamp_s
-        if not len(self._centres) or not 0.0 < dt_s < 1.0:
-            return np.zeros(2)
-        steps = centre - self._centres
-        lengths = np.hypot(steps[:, 0], steps[:, 1])
-        nearest = int(np.argmin(lengths))
-        if lengths[nearest] > STEP_M:
-            return np.zeros(2)
-        return np.asarray(steps[nearest] / max(dt_s, float(lengths[nearest]) / FASTEST_MPS))
+
+def _pieces(points: Array, beams: Beams) -> tuple[Beams, Beams, Array, Array]:
+    """The pieces of a scan that hang together: first point, number of points, centre and width of each."""
+    steps = np.hypot(points[1:, 0] - points[:-1, 0], points[1:, 1] - points[:-1, 1])
+    starts = np.concatenate(([0], 1 + np.flatnonzero((steps > APART_M) | (np.diff(beams) > 3))))
+    ends = np.append(starts[1:], len(points))
+    centres = np.add.reduceat(points, starts, axis=0) / (ends - starts)[:, None]
+    widths = np.hypot(points[ends - 1, 0] - points[starts, 0], points[ends - 1, 1] - points[starts, 1])
+    return starts, ends - starts, centres, widths
+
+
+def _velocity(centre: Array, before: Array, dt_s: float) -> Array:
+    """From the nearest piece of the scan before; 0 if none was near."""
+    if not len(before):
+        return np.zeros(2)
+    steps = centre - before
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
+    nearest = int(np.argmin(lengths))
+    if lengths[nearest] > STEP_M:
+        return np.zeros(2)
+    return np.asarray(steps[nearest] / max(dt_s, float(lengths[nearest]) / FASTEST_MPS))
 
 
 @kernel
 def came_closer(
     ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int
 ) -> Mask:
-    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in three beams side by side.
+    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in five beams side by side.
 
     Args:
         ranges, before: (n,) this scan and the one before, of equal angles; NaN in `before` says nothing.
@@ -87,8 +95,8 @@ def came_closer(
         dx, dy = laser[0] + c_now * x - s_now * y - last[0], laser[1] + s_now * x + c_now * y - last[1]
         x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
         j = int(np.round((np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad))
-        if j < 1 or j > before.shape[0] - 2:
+        if j < 2 or j > before.shape[0] - 3:
             continue
-        free_m = min(before[j - 1], before[j], before[j + 1])
+        free_m = min(before[j - 2], before[j - 1], before[j], before[j + 1], before[j + 2])
         moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
     return moved

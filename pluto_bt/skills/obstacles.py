@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.kernel import kernel
@@ -15,6 +16,7 @@ from pluto_bt.skills.outline import Array, Planar
 X, Y, MARGIN, SINCE, VX, VY = range(6)  # columns of the memory
 FIELD_EDGE_RAD = math.radians(1.0)  # memory this near the edge of the field of view is kept: the edge beam may just miss it
 LONE_STEP_M = 0.3  # a single beam so much shorter than both neighbours needs the scan before to confirm it
+HEARD_THROUGH_M = 0.4  # an echo so much farther says that nothing is where one was before
 FORETELL_S = 1.0  # what moves is thought to go on for so long after it was seen
 
 
@@ -29,8 +31,7 @@ class Obstacles:
         """Nothing is known."""
         self._seen = np.zeros((0, 6))  # the newest scan
         self._kept = np.zeros((0, 6))  # what left the field of view
-        self._echoes = np.zeros((0, 6))  # those that the laser does not explain
-        self._explained = np.zeros((0, 6))  # those that say what the laser says better; they count where the laser does not
+        self._echoes = np.zeros((0, 6))  # what the sonar heard and the laser does not say better
         self._movers = Movers()
         self._last_ranges_m: Array | None = None
         self._last_pose: Planar = (0.0, 0.0, 0.0)
@@ -60,17 +61,29 @@ class Obstacles:
         self._seen = seen
         self._last_ranges_m, self._last_pose = (ranges if tilt_rad == 0.0 else None), laser
 
-    def add_echoes(self, unexplained: Array, explained: Array, robot: Planar, now_s: float) -> None:
-        """Take sonar points (robot frame; x, y, margin), also none; what is too old is forgotten."""
-        oldest_s = now_s - self.parameters.sonar_memory_s
-        self._echoes = _renewed(self._echoes, unexplained, robot, oldest_s, now_s)
-        self._explained = _renewed(self._explained, explained, robot, oldest_s, now_s)
+    def add_echoes(
+        self, echoes: Array, axes: Array, ranges_m: Array, half_cone_rad: float, robot: Planar, memory_s: float, now_s: float
+    ) -> None:
+        """Take sonar points, also none; forget what is too old, and what the sonar now hears through.
+
+        Args:
+            echoes: (n, 5) points in the robot frame.
+            axes, ranges_m: (k, 3) x, y, theta of all transducers in the robot frame, and what each reads.
+        """
+        old = self._echoes
+        if len(old):
+            old = old[(old[:, SINCE] > now_s - memory_s) & ~_heard_through(old, axes, ranges_m, half_cone_rad, robot[0], robot[1], robot[2])]
+        fresh = np.zeros((len(echoes), 6))
+        fresh[:, MARGIN] = echoes[:, 2]
+        fresh[:, SINCE] = now_s
+        _place(echoes[:, 0], echoes[:, 1], robot, fresh)
+        self._echoes = np.concatenate((old, fresh)) if len(fresh) else old
 
     def around(self, robot: Planar, with_laser: bool, with_sonar: bool, now_s: float, beyond_m: float = 0.0) -> Array:
         """(n, 5) x, y, margin, velocity x, y in the robot frame, of all that is remembered nearer than the reach and `beyond_m`."""
-        parts = ([self._seen, self._kept] if with_laser else []) + ([self._echoes] if with_sonar else [])
-        if with_sonar and not with_laser:
-            parts.append(self._explained)
+        parts = [self._seen, self._kept] if with_laser else []
+        if with_sonar:
+            parts.append(self._echoes)
         if not parts:
             return np.zeros((0, 5))
         return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], now_s, self.parameters.reach_m + beyond_m)
@@ -108,23 +121,29 @@ class Obstacles:
         self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < p.reach_m + 1.0)]
 
 
-def _renewed(old: Array, points: Array, robot: Planar, oldest_s: float, now_s: float) -> Array:
-    """A memory of echoes without what is too old, and with `points` of now."""
-    old = old[old[:, SINCE] > oldest_s]
-    if not len(points):
-        return old
-    fresh = np.zeros((len(points), 6))
-    fresh[:, MARGIN] = points[:, 2]
-    fresh[:, SINCE] = now_s
-    _place(points[:, 0], points[:, 1], robot, fresh)
-    return np.concatenate((old, fresh))
-
-
 def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:
     """Write points given in `frame` into the first two columns of `out`, in the frame that `frame` is given in."""
     c, s = math.cos(frame[2]), math.sin(frame[2])
     out[:, X] = frame[0] + c * x - s * y
     out[:, Y] = frame[1] + s * x + c * y
+
+
+@kernel
+def _heard_through(
+    points: Array, axes: Array, ranges_m: Array, half_cone_rad: float, x_m: float, y_m: float, theta_rad: float
+) -> NDArray[np.bool_]:
+    """Which remembered points lie well inside a cone and nearer than what its transducer reads now."""
+    gone = np.zeros(points.shape[0], dtype=np.bool_)
+    c, s, opening = np.cos(theta_rad), np.sin(theta_rad), np.tan(0.7 * half_cone_rad)
+    for k in range(axes.shape[0]):
+        c_k, s_k, free_m = np.cos(axes[k, 2]), np.sin(axes[k, 2]), ranges_m[k] - HEARD_THROUGH_M
+        for i in range(points.shape[0]):
+            dx, dy = points[i, 0] - x_m, points[i, 1] - y_m
+            away_x, away_y = c * dx + s * dy - axes[k, 0], c * dy - s * dx - axes[k, 1]
+            ahead_m, aside_m = c_k * away_x + s_k * away_y, c_k * away_y - s_k * away_x
+            if free_m > 0.0 and away_x * away_x + away_y * away_y < free_m * free_m and abs(aside_m) < ahead_m * opening:
+                gone[i] = True
+    return gone
 
 
 @kernel

@@ -51,8 +51,13 @@ class Sight:
         self._sonar: SonarState | None = None
         self._sonar_is_good = False
 
-    def look(self, view: ScanView | None, sonar: SonarState | None, robot: Planar, now_s: float) -> None:
-        """Take what is new. `robot` is the pose in the frame of dead reckoning now."""
+    def look(self, view: ScanView | None, sonar: SonarState | None, robot: Planar, with_laser: bool, now_s: float) -> None:
+        """Take what is new.
+
+        Args:
+            robot: the pose in the frame of dead reckoning now.
+            with_laser: the laser is asked for, so that it explains echoes; else the echoes alone count, and longer.
+        """
         if view is not None and self.laser is not None and (self._scan is None or view.scan.stamp_s != self._scan.stamp_s):
             self._scan_fault = self._judge(view, robot)
             if view.laser is not None and self._scan_fault == ALL_WELL:
@@ -60,7 +65,7 @@ class Sight:
             self._scan = view.scan
         if sonar is not None and self.ring is not None and sonar is not self._sonar:
             self._sonar = sonar
-            self._listen(sonar, self.ring, robot, now_s)
+            self._listen(sonar, self.ring, robot, with_laser, now_s)
 
     def laser_fault(self, now_s: float) -> Verdict:
         """Why the laser cannot be trusted now; ALL_WELL if it can, or if the robot has none."""
@@ -109,16 +114,18 @@ class Sight:
         has_moved = math.hypot(robot[0] - at[0], robot[1] - at[1]) > FROZEN_TRAVEL_M or abs(robot[2] - at[2]) > FROZEN_TURN_RAD
         return has_moved and not is_open
 
-    def _listen(self, sonar: SonarState, ring: SonarRing, robot: Planar, now_s: float) -> None:
+    def _listen(self, sonar: SonarState, ring: SonarRing, robot: Planar, with_laser: bool, now_s: float) -> None:
         """Remember the echoes that the laser does not explain; where it sees the same thing it knows better where."""
         ranges = np.array(sonar.ranges_m)
         self._sonar_is_good = ranges.shape == (ring.count,) and bool(np.isfinite(ranges).all())
         if not self._sonar_is_good:
             return
-        near = ranges < min(self.parameters.reach_m, ring.max_range_m)
-        is_open = near
-        if self.laser is not None and near.any():
+        p = self.parameters
+        near = ranges < min(p.reach_m, ring.max_range_m)
+        memory_s = p.sonar_memory_s
+        if with_laser and self.laser is not None:
             known = self._obstacles.around(robot, True, False, now_s, BEYOND_M)
-            is_open = near & unexplained(ring.axes, ranges, ring.half_cone_rad, known, SLACK_M)
-        margin_m = self.parameters.margin_m
-        self._obstacles.add_echoes(ring.place(ranges, is_open, margin_m), ring.place(ranges, near & ~is_open, margin_m), robot, now_s)
+            near = near & unexplained(ring.axes, ranges, ring.half_cone_rad, known, SLACK_M)
+            memory_s = p.open_echo_memory_s
+        echoes = ring.place(ranges, near, p.margin_m)
+        self._obstacles.add_echoes(echoes, ring.axes, ranges, ring.half_cone_rad, robot, memory_s, now_s)

@@ -16,6 +16,7 @@ from pluto_bt.skills.outline import Array, Outline
 Mask = NDArray[np.bool_]
 ECHO_SPREAD = 0.25  # the echo came from somewhere in the cone: it is put on the axis and at this share of the opening to each side
 
+POINTS_AN_ECHO = 3
 DEAF_M = 0.02  # readings are not more exact than this
 
 
@@ -31,7 +32,7 @@ class SonarRing:
         self.min_range_m = sonar.min_range_m
         self.count = len(sonar.transducers)
         spread_rad = math.radians(sonar.cone_deg) * ECHO_SPREAD
-        self._places = np.array([(t.x_m, t.y_m) for t in sonar.transducers]).repeat(3, axis=0)
+        self._places = np.array([(t.x_m, t.y_m) for t in sonar.transducers]).repeat(POINTS_AN_ECHO, axis=0)
         angles = [math.radians(t.theta_deg) + side * spread_rad for t in sonar.transducers for side in (-1.0, 0.0, 1.0)]
         self._ways = np.column_stack([np.cos(angles), np.sin(angles)])
         self._leaves_m = np.array([outline.way_out_m(*place, *way) for place, way in zip(self._places.tolist(), self._ways.tolist(), strict=True)])
@@ -52,8 +53,8 @@ class SonarRing:
 
         A transducer is deaf below its least range and reports that range for everything nearer: such an echo is put on the outline.
         """
-        mask = wanted.repeat(3)
-        echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(3)[mask]
+        mask = wanted.repeat(POINTS_AN_ECHO)
+        echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(POINTS_AN_ECHO)[mask]
         echoes = np.maximum(echoes, self._leaves_m[mask])
         points = np.zeros((len(echoes), 5))
         points[:, 2] = margin_m

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Final
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.board_view import BoardView
@@ -13,14 +13,14 @@ from pluto_bt.trees.controls.sequence import Sequence
 from pluto_bt.trees.controls.try_catch import TryCatch
 from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
+from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import NodeState, Tracked
 
-
+MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
 
 
 class Mission:
@@ -57,11 +57,18 @@ class Mission:
         context, root = self._context, self.root
         self.ticks += 1
         try:
-            self._before_tick()
-            result: Result = root.step()
-            while again and result is RUNNING and context.woken:
-                self._before_tick()
+            result: Result = RUNNING
+            context.woken, repeats = True, 0
+            while context.woken and result is RUNNING:
+                if context.skipped or context.polled or context.late_error is not None:
+                    self._before_tick()
+                context.woken = False
                 result = root.step()
+                repeats += 1
+                if not again:
+                    break
+                if repeats > MAX_REPEATS:
+                    raise StepError(root, f"a tick does not end: nodes have asked {MAX_REPEATS} times for another one at once")
         except Exception as error:
             raise self._tick_error(error) from error
         if result is SUCCESS or result is FAILURE:
@@ -72,7 +79,6 @@ class Mission:
         context = self._context
         context.skipped.clear()
         context.fire_due()
-        context.woken = False
         if context.late_error is not None:
             error, context.late_error = context.late_error, None
             raise error
@@ -188,7 +194,10 @@ class Mission:
     def _begun(self, node: Any, step: Callable[[], Result]) -> Callable[[], Result]:
         def begin() -> Result:
             self._context.current = node
-            return step()
+            try:
+                return step()
+            except Exception as error:
+                raise StepError(node, told(error)) from error
 
         return begin
 

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from pluto_bt.trees.values import ANYTHING, Kind, PortProblem, kind_of_type
+from pluto_bt.trees.python_types import kind_of_type
+from pluto_bt.trees.values import ANYTHING, Kind, PortProblem
 
 Direction = Literal["in", "out", "inout"]
 

@@ -133,9 +133,11 @@ class Scope:
     def write(self, key: str, value: Any, kind: Kind | None = None) -> None:
         """Write by the rules of kinds (`Blackboard::set`); `kind` is that of the writing port, if it has one."""
         kind = kind if kind is not None and kind.typed else kind_of_value(value)
-        entry = self.find(key)
+        entry = self.entries.get(key) or self.find(key)
         if entry is None:
             self.declare(key, kind if kind is not STRING else None).put(value)  # a first text leaves the entry open
+        elif entry.kind is kind and kind is not None:
+            entry.put(value)
         elif entry.kind is None or not entry.kind.typed:
             entry.put(value)
             if kind is not None or isinstance(value, str):
@@ -191,16 +193,20 @@ def _fitted(key: str, wanted: Kind, kind: Kind | None, value: Any) -> Any:
 def reader(scope: Scope, key: str, kind: Kind) -> Callable[[], Any]:
     """A function that reads the entry `key` as `kind`. It looks the entry up again only after entries were made or removed."""
     board, wanted, convert = scope.board, kind.python, kind.convert
-    entry: Entry | None = None
+    missing = Entry()
+    entry = missing
     seen = -1
 
     def read() -> Any:
         nonlocal entry, seen
         if seen != board.changes:
-            entry, seen = scope.find(key), board.changes
-        if entry is None or (value := entry.value) is EMPTY:
+            entry, seen = scope.find(key) or missing, board.changes
+        value = entry.value
+        if type(value) is wanted:
+            return value
+        if value is EMPTY:
             raise MissingValue(f"entry {key!r} has no value")
-        return value if type(value) is wanted else convert(value)
+        return convert(value)
 
     return read
 

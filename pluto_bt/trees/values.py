@@ -1,22 +1,17 @@
 """The types of ports and blackboard entries: how each is read from text, and from a value of another type.
 
 Rules of BehaviorTree.CPP 4.10 for its own types (int, unsigned, double, bool, string, NodeStatus, vectors, queues): numbers stop at
-the first foreign character, leading blanks and `+` are refused, ranges are checked; numbers become text with six decimals. Points,
-poses and lists of points are ours: "x;y" or "x,y", "x;y;theta_deg", "1,2;3,4".
+the first foreign character, leading blanks and `+` are refused, ranges are checked; numbers become text with six decimals.
+The kinds of Python types that leaves declare (points, lists, enums, …) are in `pluto_bt.trees.python_types`.
 """
 
 from __future__ import annotations
 
-import json
 import math
 import re
-import types
-import typing
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import Enum
-from functools import cache
 from typing import Any, Final
 
 from pluto_bt.trees.engine.status import STATUS_OF_NAME, Result, Skip
@@ -26,7 +21,7 @@ INT64_RANGE: Final = (-(2**63), 2**63 - 1)
 EXACT_INT: Final = 2**53  # beyond it a double no longer holds every integer
 
 _INTEGER = re.compile(r"-?\d+")
-_REAL = re.compile(r"-?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)")
+REAL = re.compile(r"-?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)")
 
 
 class PortProblem(Exception):  # noqa: N818  it is no error of the program; it becomes a StepError or a fault with a place
@@ -90,10 +85,13 @@ def parse_int(text: str, low: int, high: int) -> int:
 
 def parse_real(text: str) -> float:
     """Leading real number of `text`."""
-    found = _REAL.match(text)
+    found = REAL.match(text)
     if found is None:
         raise ValueError("expected a number")
-    return float(found[0])
+    value = float(found[0])
+    if math.isinf(value) and "inf" not in found[0]:
+        raise ValueError("out of range")
+    return value
 
 
 def parse_bool(text: str) -> bool:
@@ -110,7 +108,7 @@ def has_trailing_text(kind: Kind, text: str) -> bool:
     if kind in (INT, INT64, UINT):
         found = _INTEGER.match(text)
     elif kind is DOUBLE:
-        found = _REAL.match(text)
+        found = REAL.match(text)
     else:
         return False
     return found is not None and found.end() != len(text)
@@ -121,7 +119,7 @@ def literal_value(text: str) -> int | float | str:
     if len(text) <= 400 and _INTEGER.fullmatch(text):
         number = int(text)
         return number if INT64_RANGE[0] <= number <= INT64_RANGE[1] else float(text)
-    return float(text) if _REAL.fullmatch(text) and "inf" not in text else text
+    return float(text) if REAL.fullmatch(text) and "inf" not in text else text
 
 
 def _cast_int(low: int, high: int) -> Callable[[Any], int]:
@@ -208,128 +206,3 @@ def kind_of_value(value: Any) -> Kind | None:
     if isinstance(value, int):
         return INT if INT32[0] <= value <= INT32[1] else INT64
     return DOUBLE if isinstance(value, float) else None
-
-
-@cache
-def kind_of_type(data_type: Any) -> Kind:
-    """The kind of a port that a leaf declares by a Python type."""
-    plain = {int: INT, float: DOUBLE, bool: BOOL, str: STRING, Any: ANYTHING, object: ANYTHING, None: ANYTHING}
-    if data_type in plain:
-        return plain[data_type]
-    origin, args = typing.get_origin(data_type), typing.get_args(data_type)
-    if origin is list and len(args) == 1:
-        return _list_of(kind_of_type(args[0]))
-    if origin is tuple and args and all(arg in (float, int) for arg in args):
-        return _numbers(tuple(kind_of_type(arg) for arg in args))
-    if origin is typing.Literal:
-        return _words(args)
-    if origin in (typing.Union, types.UnionType):
-        return _union([kind_of_type(arg) for arg in args if arg is not type(None)])
-    if isinstance(data_type, type) and issubclass(data_type, Enum):
-        return _enum(data_type)
-    if isinstance(data_type, type) and callable(getattr(data_type, "from_text", None)):
-        return _own_text(data_type)
-    return _only_objects(data_type)
-
-
-def _list_of(item: Kind) -> Kind:
-    def parse(text: str) -> list[Any]:
-        if text.startswith("json:"):
-            return cast(json.loads(text[5:]))
-        return split_list(item, text)
-
-    def cast(value: Any) -> list[Any]:
-        if not isinstance(value, (list, tuple, deque)):
-            raise ValueError("expected a list")
-        return [item.parse(one) if isinstance(one, str) else item.cast(one) for one in value]
-
-    return Kind(f"list of {item.name}", f"{item.form}; more after ';'", parse, cast)
-
-
-def _numbers(items: tuple[Kind, ...]) -> Kind:
-    """A point or a pose: so many numbers with ';' or ',' between."""
-    count = len(items)
-    form = ";".join(("x", "y", "theta_deg")[:count]) if count <= 3 else f"{count} numbers with ';' between"
-
-    def parse(text: str) -> tuple[Any, ...]:
-        parts = [part.strip() for part in re.split("[;,]", text)]
-        if len(parts) != count or not all(_REAL.fullmatch(part) for part in parts):
-            raise ValueError(f"expected {form}")
-        return tuple(item.parse(part) for item, part in zip(items, parts, strict=True))
-
-    def cast(value: Any) -> tuple[Any, ...]:
-        if not isinstance(value, (list, tuple)) or len(value) != count:
-            raise ValueError(f"expected {form}")
-        return tuple(item.cast(one) for item, one in zip(items, value, strict=True))
-
-    return Kind("point" if count == 2 else "pose" if count == 3 else f"{count} numbers", form, parse, cast)
-
-
-def _words(words: tuple[Any, ...]) -> Kind:
-    by_text = {to_text(word): word for word in words}
-
-    def parse(text: str) -> Any:
-        if text not in by_text:
-            raise ValueError(f"expected one of {', '.join(by_text)}")
-        return by_text[text]
-
-    def cast(value: Any) -> Any:
-        return value if value in words else parse(to_text(value))
-
-    return Kind("word", f"one of {', '.join(by_text)}", parse, cast)
-
-
-def _enum(enum: type[Enum]) -> Kind:
-    def parse(text: str) -> Enum:
-        for member in enum:
-            if text == member.name or text == str(member.value):
-                return member
-        raise ValueError(f"expected one of {', '.join(enum.__members__)}")
-
-    def cast(value: Any) -> Enum:
-        return value if isinstance(value, enum) else enum(int(value) if isinstance(value, float) else value)
-
-    return Kind(enum.__name__, f"one of {', '.join(enum.__members__)}", parse, cast)
-
-
-def _union(members: list[Kind]) -> Kind:
-    if len(members) == 1:
-        return members[0]
-
-    def first(way: str, value: Any) -> Any:
-        for member in members:
-            try:
-                return getattr(member, way)(value)
-            except ValueError:
-                continue
-        raise ValueError(f"expected {form}")
-
-    form = " or ".join(member.form for member in members)
-    return Kind(" | ".join(member.name for member in members), form, lambda text: first("parse", text), lambda value: first("cast", value))
-
-
-def _own_text(data_type: Any) -> Kind:
-    def cast(value: Any) -> Any:
-        if isinstance(value, data_type):
-            return value
-        if isinstance(value, (int, float, tuple)):
-            return data_type.from_text(";".join(map(str, value)) if isinstance(value, tuple) else str(value))
-        raise ValueError(f"expected a {data_type.__name__}")
-
-    form = getattr(data_type, "TEXT_FORM", f"a {data_type.__name__}")
-    return Kind(data_type.__name__, form, data_type.from_text, cast, data_type)
-
-
-def _only_objects(data_type: Any) -> Kind:
-    wanted = typing.get_origin(data_type) or data_type
-    name = getattr(wanted, "__name__", str(wanted))
-
-    def parse(_text: str) -> Any:
-        raise ValueError("it cannot be written as text; name an entry with {braces}")
-
-    def cast(value: Any) -> Any:
-        if isinstance(wanted, type) and not isinstance(value, wanted):
-            raise ValueError(f"expected a {name}")
-        return value
-
-    return Kind(name, "{key}", parse, cast, wanted if isinstance(wanted, type) else None, literals=False)

@@ -33,12 +33,12 @@ class InertialSensor:
         self._bias = (spread * noise.normal(), spread * noise.normal(), spread * noise.normal())
         self._phi, self._psi = ground.tilt_rad(*body.pose)
         self._speed_mps = body.speed_mps
-        self._before_s = -math.inf
+        self._before_s: float | None = None
 
     def sample(self, now_s: float) -> InertialRecord:
         """Rates, accelerations and angles now."""
         body = self._body
-        dt_s = min(now_s - self._before_s, self.period_ns / NS) or 1e-6  # the first sample has none before it
+        dt_s = self.period_ns / NS if self._before_s is None else max(now_s - self._before_s, 1e-6)
         self._before_s = now_s
         phi_rate, psi_rate = self._rock(dt_s)
         speed, turn, g = body.speed_mps, body.turn_rate_radps, GRAVITY_MPS2

@@ -68,14 +68,15 @@ class Rig:
         above = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": ""}
         self.inboxes = {name: Inbox(name, self._owner(up)) for name, up in above.items()}
         context = Context(self.board, self.clock, self.platform, self.inboxes, {}, None, lambda *line: None, self.running.__getitem__)
-        context.extras["order_module"] = lambda name, run: self.running.__setitem__(name, run)
+        context.order_module = lambda name, run: self.running.__setitem__(name, run)
         self.links = {"motion": Motion(context), "avoid": Avoid(context), "drive": Drive(context)}
         self.twist = (0.0, 0.0)
         self._base = (0.0, 0.0)
         self._base_s = -1.0
         self._distance = 0.0
-        self._publish = {name: self.board.publisher(name, self.board.topic(name).writer) for name in
-                         ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose")}  # fmt: skip
+        self._gap = 0.0
+        names = ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose")
+        self._publish = {name: self.board.publisher(name, self.board.topic(name).writer) for name in names}
         self._scans: list[LaserScan] = []
         self._woken: set[str] = set()
         for name in self.links:
@@ -154,7 +155,12 @@ class Rig:
         self.pose, self.twist = new, (v, w)
 
     def _touch(self, pose: tuple[float, float, float], v: float, w: float) -> None:
+        fastest = max((math.hypot(*disc.velocity) for disc in self.discs), default=0.0)
+        self._gap -= (abs(v) + abs(w) + fastest) * TICK_NS / 1e9
+        if self._gap > max(0.0, self.clearance):
+            return  # cannot be nearer than ever before
         gap, point, owner = self._nearest(pose)
+        self._gap = gap
         self.clearance = min(self.clearance, gap)
         if gap > 0.0:
             return

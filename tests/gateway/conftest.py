@@ -12,7 +12,8 @@ from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.runtime.clock import MonotonicClock
-from tests.gateway.robot import FakeRobot
+
+from .robot import FakeRobot
 
 
 class Running:

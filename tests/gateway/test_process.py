@@ -13,7 +13,8 @@ from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.gateway.listen import Address, open_listener, parse_address
 from pluto_bt.source import InputError
-from tests.gateway.conftest import Running
+
+from .conftest import Running
 
 WAIT_S = 20.0
 

@@ -13,7 +13,8 @@ from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.local import LocalClient, LocalGateway
 from pluto_bt.gateway.port import RunState
-from tests.gateway.robot import FakeRobot
+
+from .robot import FakeRobot
 
 SCHEMA = etree.XMLSchema(etree.parse(str(Path(gateway.__file__).with_name("protocol.xsd"))))
 RUN = '<run id="7" node="GoTo" goal="3;4" deadline_s="60"/>'

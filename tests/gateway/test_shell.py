@@ -10,7 +10,8 @@ from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway import shell
 from pluto_bt.gateway.port import RunState
 from pluto_bt.gateway.shell import main
-from tests.gateway.conftest import Running
+
+from .conftest import Running
 
 
 def say(running: Running, *words: str) -> tuple[int, str]:

@@ -14,7 +14,7 @@ from pluto_bt.maps.platform import Inertial, Laser, MarkerCamera, WheelSpeed
 from pluto_bt.maps.platform import Wrist as WristUnit
 from pluto_bt.modules.local import Local
 from pluto_bt.modules.marker import Marker
-from pluto_bt.modules.post_box import post_box, refusal
+from pluto_bt.modules.post_box import refusal
 
 DT_S = 0.02
 V_MPS, W_RADPS = 0.5, 0.2
@@ -106,7 +106,7 @@ def test_a_scan_waits_for_odometry_and_one_that_is_too_old_is_counted(make_rig: 
 
 def test_a_set_pose_moves_interface_3_and_never_0(make_rig: Any) -> None:
     rig = make_rig()
-    local, box = Local(rig.context), post_box(rig.context)
+    local, box = Local(rig.context), rig.context.posts
     drive(rig, local, range(101))
     before = rig.newest(DR)
     assert box.post("operator", post(1.5, (10.0, 5.0, 2.0), -1)) == ""
@@ -121,7 +121,7 @@ def test_a_set_pose_moves_interface_3_and_never_0(make_rig: Any) -> None:
 
 def test_interface_0_never_moves_more_than_v_dt_when_2_is_written(make_rig: Any) -> None:
     rig = make_rig()
-    local, box = Local(rig.context), post_box(rig.context)
+    local, box = Local(rig.context), rig.context.posts
     drive(rig, local, range(2))
     for k in range(2, 200):
         before = planar(rig.newest(DR))
@@ -132,7 +132,7 @@ def test_interface_0_never_moves_more_than_v_dt_when_2_is_written(make_rig: Any)
 
 def test_a_laser_pose_puts_the_laser_where_it_says(make_rig: Any) -> None:
     rig = make_rig(laser=Laser(x_m=0.48), wrist=WristUnit())
-    local, box = Local(rig.context), post_box(rig.context)
+    local, box = Local(rig.context), rig.context.posts
     drive(rig, local, range(101), pan_radps=0.3)
     better = (7.0, 8.0, -1.0)
     box.post("pose", post(1.8, better, 1))
@@ -150,7 +150,7 @@ def _robot_of(laser: tuple[float, float, float], t_s: float) -> tuple[float, flo
 
 def test_a_post_whose_stamp_is_forgotten_is_dropped_counted_and_said(make_rig: Any) -> None:
     rig = make_rig()
-    local, box = Local(rig.context), post_box(rig.context)
+    local, box = Local(rig.context), rig.context.posts
     drive(rig, local, range(400))
     before = rig.newest(POSE)
     for stamp_s in (0.5, 99.0):
@@ -178,7 +178,7 @@ def test_who_may_set_the_pose_after_whom(setter: int, now_set_by: int, refused: 
 
 def test_a_setter_that_falls_silent_becomes_0_and_the_covariance_grows(make_rig: Any) -> None:
     rig = make_rig(laser=Laser(x_m=0.0))
-    local, box = Local(rig.context), post_box(rig.context)
+    local, box = Local(rig.context), rig.context.posts
     drive(rig, local, range(51))
     box.post("pose", post(1.0, (1.0, 1.0, 1.0), 1))
     local.step(1.0)
@@ -246,3 +246,28 @@ def test_accepted_markers_set_position_and_slowly_pull_the_heading(make_rig: Any
     assert abs(pose.pose[3] - math.pi / 2) < 0.03
     assert abs(rig.newest(DR).pose[3] - math.pi / 2) > 0.1
     assert rig.newest("car/marker").refused == "" and rig.newest("car/marker").accepted_count == 100
+
+
+def test_a_far_marker_moves_the_pose_only_when_the_next_one_confirms_it(make_rig: Any) -> None:
+    rig = make_rig((0.5, 12.0, 0.0), kinematics="ackermann", dmu=Inertial(), speed=WheelSpeed(), marker=MarkerCamera())
+    local, marker = Local(rig.context), Marker(rig.context)
+    local.start(0.0)
+    seen = {1.0: (3.0, 9.0), 2.0: (0.5, 12.0), 6.0: (0.52, 12.01), 7.0: (1.4, 12.0), 8.0: (1.41, 12.0)}
+    verdicts, places = {}, {}
+    for k in range(1, 451):
+        now_s = round(k * DT_S, 6)
+        rig.put("car/speed", SpeedState(now_s, 0.0), now_s)
+        rig.put("dmu/state", ImuState(now_s, 0.0, bias_known=True), now_s)
+        if now_s in seen:
+            rig.devices["marker"].records = [MarkerRecord(now_s, now_s, 7, *seen[now_s], 0.0, 0.5)]
+        local.step(now_s)
+        marker.step(now_s)
+        if now_s in seen:
+            verdicts[now_s] = rig.newest("car/marker").refused
+        if now_s - 0.5 in seen:
+            places[now_s - 0.5] = rig.newest(POSE).pose[:2]
+    assert verdicts == {1.0: "", 2.0: "too-fast", 6.0: "", 7.0: "", 8.0: ""}
+    assert places[1.0] == pytest.approx((0.5, 12.0))  # the first marker is nonsense, and there is nothing to compare it with
+    assert places[6.0] == pytest.approx((0.52, 12.01))
+    assert places[7.0] == pytest.approx((0.52, 12.01))  # far from the estimate, for the first time
+    assert places[8.0] == pytest.approx((1.41, 12.0))  # confirmed

@@ -178,7 +178,7 @@ class TestSupervision:
             while True:
                 try:
                     threading.Event().wait(60.0)
-                except Exception:  # noqa: S112, BLE001  # what a careless leaf does; the watchdog gets through all the same
+                except Exception:  # what a careless leaf does; the watchdog gets through all the same
                     continue
 
 

@@ -9,6 +9,7 @@ import pytest
 from py_trees.common import Status
 from py_trees.ports import BehaviourWithPorts
 
+from pluto_bt.behaviours.leaf import NO_PORTS
 from pluto_bt.scenario import Play, Run
 from pluto_bt.source import InputError
 from tests.shared_data import shared_file
@@ -50,7 +51,7 @@ def test_the_robot_patrols_the_yard_and_comes_home(scenario: Play) -> None:
         ("worlds/kth_yard.xml", "atrv2", "115,222,-90", [(115.0, 210.0), (120.0, 202.0)]),
     ],
 )
-def test_the_robot_patrols_in_maps_of_all_three_kinds(scenario: Play, world: str, platform: str, start: str, goals: list[tuple[float, float]]) -> None:
+def test_the_robot_patrols_in_maps_of_all_three_kinds(scenario: Play, world: str, platform: str, start: str, goals: Any) -> None:
     path = shared_file("data", world)
     run = scenario(str(path), mission="patrol.xml", platform=platform, start=start, ports={"goals": goals}, seed=5)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
@@ -85,8 +86,8 @@ def test_a_dead_laser_pauses_the_drive_and_the_mission_goes_on_after_the_reboot(
 class Raises(BehaviourWithPorts, tag="StoryRaises"):
     """A leaf with a bug."""
 
-    INPUT_PORTS: dict[str, Any] = {}
-    OUTPUT_PORTS: dict[str, Any] = {}
+    INPUT_PORTS = NO_PORTS
+    OUTPUT_PORTS = NO_PORTS
 
     def update(self) -> Status:
         raise ZeroDivisionError("a bug in a leaf")
@@ -95,8 +96,8 @@ class Raises(BehaviourWithPorts, tag="StoryRaises"):
 class GivesNothing(Raises, tag="StoryGivesNothing"):
     """A leaf that forgets to return."""
 
-    INPUT_PORTS: dict[str, Any] = {}
-    OUTPUT_PORTS: dict[str, Any] = {}
+    INPUT_PORTS = NO_PORTS
+    OUTPUT_PORTS = NO_PORTS
 
     def update(self) -> Status:
         return None  # type: ignore[return-value]  # that is the bug

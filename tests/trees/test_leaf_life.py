@@ -100,7 +100,11 @@ class Broken(BehaviourWithPorts, tag="Broken"):
 
 @pytest.mark.parametrize(
     ("how", "reason"),
-    [("raise", "RuntimeError: no more"), ("none", "update() returned None, which is no status"), ("word", "update() returned 'SUCCESS', which is no status")],
+    [
+        ("raise", "RuntimeError: no more"),
+        ("none", "update() returned None, which is no status"),
+        ("word", "update() returned 'SUCCESS', which is no status"),
+    ],
 )
 def test_a_broken_leaf_halts_the_tree_and_is_named(pages: list[str], how: str, reason: str) -> None:
     mission = mission_of(f'<Parallel>\n<DiaryLeaf answers="RR"/><Sequence><Broken name="b" how="{how}"/></Sequence></Parallel>', Diary, Broken)
@@ -240,7 +244,8 @@ def test_node_states_tell_since_when() -> None:
     clock.advance(0.2)
     mission.tick_once()
     assert mission.node_states() == first
-    assert [(state.path, state.depth, state.status, state.since_s) for state in first] == [("s", 1, "RUNNING", 1.0), ("z", 2, "RUNNING", 1.0), ("a", 2, "IDLE", 0.0)]
+    facts = [(state.path, state.depth, state.status, state.since_s) for state in first]
+    assert facts == [("s", 1, "RUNNING", 1.0), ("z", 2, "RUNNING", 1.0), ("a", 2, "IDLE", 0.0)]
     assert mission.active_leaf() == "z"
 
 
@@ -284,4 +289,42 @@ def test_an_error_in_a_halt_hook_between_ticks_is_told_at_the_next_tick() -> Non
     mission.tick_once()
     clock.advance(1.0)
     with pytest.raises(TickError, match=r"node 'Clumsy::2' \(Clumsy\) at m.xml:2: ValueError: dropped it"):
+        mission.tick_once()
+
+
+@pytest.mark.parametrize("where", ["__init__", "setup"])
+def test_a_leaf_that_cannot_be_made_is_a_fault_of_the_mission(where: str) -> None:
+    def explode(self: Any, *args: Any, **kwargs: Any) -> None:
+        raise OSError("no such device")
+
+    members = {"INPUT_PORTS": {}, "OUTPUT_PORTS": {}, "update": lambda self: Status.SUCCESS, where: explode}
+    fragile = type("Fragile", (BehaviourWithPorts,), members, register=False)
+    with pytest.raises(MissionError) as caught:
+        mission_of("<Fragile/>", fragile)
+    fault = caught.value.faults[0]
+    assert (fault.line, fault.column) == (2, 1)
+    assert fault.message.endswith("OSError: no such device")
+
+
+def test_values_of_one_leaf_do_not_leak_into_another() -> None:
+    """Mutable literals and defaults are copied for each reader."""
+
+    class Appends(BehaviourWithPorts, tag="Appends"):
+        INPUT_PORTS: ClassVar = {"a": Port(list[int], required=False), "b": Port(list[int], required=False, default_value=[])}
+        OUTPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
+
+        def update(self) -> Status:
+            for port in ("a", "b"):
+                self.get_input(port).append(9)
+            self.seen = [self.get_input("a"), self.get_input("b")]
+            return Status.SUCCESS
+
+    mission = mission_of('<Sequence><Appends a="1;2"/><Appends a="1;2"/></Sequence>', Appends)
+    mission.tick_once()
+    assert [leaf.seen for leaf in mission.root.children] == [[[1, 2], []]] * 2
+
+
+def test_a_tick_that_would_never_end_is_an_error() -> None:
+    mission = mission_of('<Repeat num_cycles="-1"><AlwaysSuccess/></Repeat>')
+    with pytest.raises(TickError, match="a tick does not end"):
         mission.tick_once()

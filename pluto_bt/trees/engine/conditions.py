@@ -34,17 +34,8 @@ def guard(node: Any, scripts: Mapping[str, ScriptRunner], skip: Callable[[Any], 
         if on_halted is not None:
             on_halted.run(node)
 
-    def forced() -> Result | None:
-        status = node.status
-        if status is IDLE:
-            return _forced_when_idle(node, pre)
-        if status is RUNNING and pre and pre[-1][0] == "_while" and not pre[-1][1].is_true(node):
-            node.halt()
-            return SKIPPED
-        return None
-
     def guarded_step() -> Result:
-        result = forced() if pre else None
+        result = _forced(node, pre) if pre else None
         if result is SKIPPED:
             return skip(node)
         if result is None:
@@ -56,6 +47,17 @@ def guard(node: Any, scripts: Mapping[str, ScriptRunner], skip: Callable[[Any], 
         return result
 
     node.step, node.halt = guarded_step, guarded_halt
+
+
+def _forced(node: Any, pre: list[tuple[str, ScriptRunner]]) -> Result | None:
+    """The answer that the pre-conditions force, or None; a RUNNING node whose `_while` turned false is halted."""
+    if node.status is IDLE:
+        return _forced_when_idle(node, pre)
+    name, script = pre[-1]
+    if node.status is RUNNING and name == "_while" and not script.is_true(node):
+        node.halt()
+        return SKIPPED
+    return None
 
 
 def _forced_when_idle(node: Any, pre: list[tuple[str, ScriptRunner]]) -> Result | None:

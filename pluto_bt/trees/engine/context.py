@@ -53,7 +53,7 @@ class Context:
         self.skipped: list[Any] = []
         self.current: Any = None  # the leaf that was begun last: the one to blame while a tick does not come back
         self.late_error: Exception | None = None  # raised by a timer between ticks, told at the next tick
-        self._polled: list[tuple[float, int, PolledTimer]] = []
+        self.polled: list[tuple[float, int, PolledTimer]] = []
         self._order = itertools.count()
 
     def wake_up(self) -> None:
@@ -69,13 +69,13 @@ class Context:
             timer: Timer = call_at(at_s, guarded)
             return timer
         polled = PolledTimer(guarded)
-        heapq.heappush(self._polled, (at_s, next(self._order), polled))
+        heapq.heappush(self.polled, (at_s, next(self._order), polled))
         return polled
 
     def fire_due(self) -> None:
         """Fire the polled timers whose time has come."""
-        while self._polled and self._polled[0][0] <= self.clock.now_s():
-            timer = heapq.heappop(self._polled)[2]
+        while self.polled and self.polled[0][0] <= self.clock.now_s():
+            timer = heapq.heappop(self.polled)[2]
             if not timer.cancelled:
                 timer.callback()
 

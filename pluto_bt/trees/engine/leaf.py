@@ -14,8 +14,8 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
 from pluto_bt.trees.engine.context import Context
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
 from pluto_bt.trees.errors import StepError
-from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
 
 
 def bind_leaf(leaf: Any, context: Context) -> None:
@@ -27,33 +27,62 @@ def bind_leaf(leaf: Any, context: Context) -> None:
 
 
 def _own_step(leaf: Any, context: Context) -> Callable[[], Result]:
-    update, initialise, terminate = leaf.update, leaf.initialise, leaf.terminate
-    has_start = type(leaf).initialise is not Behaviour.initialise or "initialise" in leaf.__dict__
-    has_end = type(leaf).terminate is not Behaviour.terminate or "terminate" in leaf.__dict__
+    """The step of a leaf; those that have neither `initialise` nor `terminate` do not pay for them."""
+    # not by looking into `__dict__`: that alone makes every later look-up on the leaf slower
+    has_start = getattr(leaf.initialise, "__func__", None) is not Behaviour.initialise
+    has_end = getattr(leaf.terminate, "__func__", None) is not Behaviour.terminate
+    return _full_step(leaf, context) if has_start or has_end else _plain_step(leaf, context)
+
+
+def _plain_step(leaf: Any, context: Context) -> Callable[[], Result]:
+    update = leaf.update
 
     def step() -> Result:
         context.current = leaf
         try:
-            if has_start and leaf.status is not RUNNING:
+            new: Status = update()
+        except Exception as error:
+            raise _blamed(leaf, error) from error
+        if new is SUCCESS or new is FAILURE or new is RUNNING:
+            leaf.status = new
+            return new
+        return _no_status(leaf, context, new)
+
+    return step
+
+
+def _full_step(leaf: Any, context: Context) -> Callable[[], Result]:
+    update, initialise, terminate = leaf.update, leaf.initialise, leaf.terminate
+
+    def step() -> Result:
+        context.current = leaf
+        try:
+            if leaf.status is not RUNNING:
                 initialise()
             new: Status = update()
-            if new is SUCCESS or new is Status.FAILURE:
-                if has_end:
-                    terminate(new)
+            if new is SUCCESS or new is FAILURE:
+                terminate(new)
                 leaf.status = new
                 return new
-        except StepError:
-            raise
         except Exception as error:
-            raise StepError(leaf, told(error)) from error
+            raise _blamed(leaf, error) from error
         if new is RUNNING:
             leaf.status = new
             return new
-        if new is IDLE:
-            return _skipped(leaf, context)
-        raise StepError(leaf, f"update() returned {new!r}, which is no status")
+        return _no_status(leaf, context, new)
 
     return step
+
+
+def _no_status(leaf: Any, context: Context, answer: object) -> Skip:
+    """INVALID is SKIPPED; everything else breaks the promise."""
+    if answer is IDLE:
+        return _skipped(leaf, context)
+    raise StepError(leaf, f"update() returned {answer!r}, which is no status")
+
+
+def _blamed(leaf: Any, error: Exception) -> StepError:
+    return error if isinstance(error, StepError) else StepError(leaf, told(error))
 
 
 def _foreign_step(leaf: Any, context: Context) -> Callable[[], Result]:

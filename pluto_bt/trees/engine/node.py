@@ -19,8 +19,8 @@ from py_trees.common import BlackBoxLevel, Status
 from py_trees.logging import Logger
 
 from pluto_bt.trees.engine.context import Context
-from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result, Skip
+from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.ports import PortModel, PortProblem
 
 _LOGGER: Final = Logger("pluto_bt")
@@ -188,8 +188,12 @@ class ControlNode(Node):
     def reset_children(self) -> None:
         """Halt the running ones, first to last, and make all IDLE."""
         for child in self.children:
-            if child.status is not IDLE:
+            status = child.status
+            if status is RUNNING:
                 reset(child)
+            elif status is not IDLE:  # as `reset` does; written out, as this is where a tick spends its time
+                child.last = status
+                child.status = IDLE
 
 
 class DecoratorNode(Node):

@@ -80,24 +80,42 @@ def _writer(scope: Scope, key: str, kind: Kind) -> Callable[[Any], None]:
 def wire_leaf(leaf: Any, ports: dict[str, PortModel], readers: Readers, writers: Writers) -> None:
     """Bind py_trees' port methods of this instance to the mission's own store, never to py_trees' global blackboard."""
     written: dict[str, Any] = {}
+    leaf.get_input = _get_input(leaf, ports, readers)
+    leaf._set_output = _set_output(leaf, ports, writers, written)
 
+    def get_last_output(port_name: str) -> Any:
+        _need_output(leaf, ports, port_name)
+        if port_name not in written:
+            raise NoDataAvailable(f"{leaf.name}: output port {port_name!r} has not been written")
+        return written[port_name]
+
+    def reset_port(port_name: str) -> None:
+        written.pop(port_name, None)
+
+    leaf.get_last_output, leaf.reset_port, leaf.last_outputs = get_last_output, reset_port, written
+
+
+def _get_input(leaf: Any, ports: dict[str, PortModel], readers: Readers) -> Callable[..., Any]:
     def get_input(port_name: str, default: Any = None) -> Any:
-        read = readers.get(port_name)
-        if read is None:
-            if port_name not in ports or ports[port_name].direction == "out":
-                raise KeyError(f"{leaf.name}: input port {port_name!r} is not declared")
-        else:
-            try:
-                return read()
-            except MissingValue as missing:
-                problem = str(missing)
-            except PortProblem as misfit:
-                raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
-        return _fallback(leaf, ports[port_name], default, problem if read is not None else "it is not given")
+        try:
+            return readers[port_name]()
+        except MissingValue as missing:
+            return _fallback(leaf, ports[port_name], default, str(missing))
+        except PortProblem as misfit:
+            raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
+        except KeyError:
+            if port_name in readers:
+                raise
+        if port_name not in ports or ports[port_name].direction == "out":
+            raise KeyError(f"{leaf.name}: input port {port_name!r} is not declared")
+        return _fallback(leaf, ports[port_name], default, "it is not given")
 
+    return get_input
+
+
+def _set_output(leaf: Any, ports: dict[str, PortModel], writers: Writers, written: dict[str, Any]) -> Callable[[str, Any], None]:
     def set_output(port_name: str, value: Any) -> None:
-        if port_name not in ports or ports[port_name].direction == "in":
-            raise KeyError(f"{leaf.name}: output port {port_name!r} is not declared")
+        _need_output(leaf, ports, port_name)
         kind = ports[port_name].kind
         try:
             written[port_name] = kind.convert(value) if kind.typed else value
@@ -106,19 +124,12 @@ def wire_leaf(leaf: Any, ports: dict[str, PortModel], readers: Readers, writers:
         except PortProblem as misfit:
             raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
 
-    def get_last_output(port_name: str) -> Any:
-        if port_name not in ports or ports[port_name].direction == "in":
-            raise KeyError(f"{leaf.name}: output port {port_name!r} is not declared")
-        if port_name not in written:
-            raise NoDataAvailable(f"{leaf.name}: output port {port_name!r} has not been written")
-        return written[port_name]
+    return set_output
 
-    def reset_port(port_name: str) -> None:
-        written.pop(port_name, None)
 
-    leaf.get_input, leaf._set_output = get_input, set_output
-    leaf.get_last_output, leaf.reset_port = get_last_output, reset_port
-    leaf.last_outputs = written
+def _need_output(leaf: Any, ports: dict[str, PortModel], port_name: str) -> None:
+    if port_name not in ports or ports[port_name].direction == "in":
+        raise KeyError(f"{leaf.name}: output port {port_name!r} is not declared")
 
 
 def _fallback(leaf: Any, port: PortModel, default: Any, why: str) -> Any:

@@ -1,0 +1,94 @@
+"""A tick of our engine against stock py_trees: reactive sequences of conditions that each read one changing blackboard value."""
+
+from __future__ import annotations
+
+import importlib.util
+import math
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from py_trees.common import Status
+from py_trees.ports import BehaviourWithPorts
+
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.bench.row import BenchRow, best_pair_us, best_us
+from pluto_bt.trees import Mission, load_mission
+
+COLUMNS = 9
+ROWS = (1, 10, 111)  # about 10, 100 and 1000 nodes
+TARGET = 20.0
+SUCCESS, FAILURE = Status.SUCCESS, Status.FAILURE  # as the baseline has them: looking a member up costs as much as a call
+
+
+class Positive(BehaviourWithPorts, tag="BenchPositive"):
+    """SUCCESS while its input is above 0."""
+
+    INPUT_PORTS = {"x": Port(int)}  # noqa: RUF012  py_trees declares these two as instance attributes, which mypy keeps us from changing
+    OUTPUT_PORTS = {}  # noqa: RUF012
+
+    def update(self) -> Status:
+        return SUCCESS if self.get_input("x") > 0 else FAILURE
+
+
+def run() -> list[BenchRow]:
+    """One row a tree size: our cost per visited node, and how many times cheaper that is."""
+    baseline = load_baseline()
+    return [_row(rows, baseline) for rows in ROWS]
+
+
+def load_baseline() -> Any:
+    """The module `tick_baseline` of the shared yardsticks; None where it is absent."""
+    shared = Path(os.environ.get("PLUTO_SHARED") or Path(__file__).resolve().parents[2].parent / "shared")
+    file = shared / "bench" / "tick_baseline.py"
+    spec = importlib.util.spec_from_file_location("tick_baseline", file) if file.is_file() else None
+    if spec is None or spec.loader is None:
+        return None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def wide_mission(rows: int) -> Mission:
+    """The baseline's tree as a mission: `rows` sequences of nine conditions under one, all reactive (memory=False)."""
+    leaves = "".join(f'<BenchPositive name="leaf {j}" x="{{x}}"/>' for j in range(COLUMNS))
+    body = "".join(f'<ReactiveSequence name="row {i}">{leaves}</ReactiveSequence>' for i in range(rows))
+    text = f'<root BTCPP_format="4"><BehaviorTree ID="Wide"><ReactiveSequence>{body}</ReactiveSequence></BehaviorTree></root>'
+    return load_mission(text, nodes=[Positive], blackboard={"x": 1})
+
+
+def _row(rows: int, baseline: Any) -> BenchRow:
+    visited = rows * (COLUMNS + 1) + 1
+    ours = _ours(wide_mission(rows))
+    if baseline is None:
+        note = f"{best_us(ours) / visited:.2f} µs a node; no ratio: shared/bench/tick_baseline.py is not there (PLUTO_SHARED names its folder)"
+        return BenchRow(f"stock py_trees / ours, {visited} nodes", math.nan, "×", f">= {TARGET:g}", note)
+    pair = best_pair_us(ours, _stock(*baseline.stock_tree(rows, COLUMNS)), repeats=max(100, 20_000 // visited))
+    ours_us, stock_us = (microseconds / visited for microseconds in pair)
+    note = f"{stock_us:.2f} against {ours_us:.2f} µs a node"
+    return BenchRow(f"stock py_trees / ours, {visited} nodes", stock_us / ours_us, "×", f">= {TARGET:g}", note)
+
+
+def _ours(mission: Mission) -> Callable[[], object]:
+    value = 1
+
+    def tick() -> None:
+        nonlocal value
+        value += 1
+        mission.blackboard["x"] = value
+        assert mission.tick_once() == "SUCCESS"
+
+    return tick
+
+
+def _stock(tree: Any, writer: Any) -> Callable[[], object]:
+    value = 1
+
+    def tick() -> None:
+        nonlocal value
+        value += 1
+        writer.x = value
+        tree.tick()
+
+    return tick
