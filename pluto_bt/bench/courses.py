@@ -90,14 +90,18 @@ class Surveyor:
         return self._way_around_m(a, b) if around else math.inf
 
     def _way_around_m(self, a: Point, b: Point) -> float:
-        """The shortest way over one point beside the straight line."""
+        """The shortest way around what stands between; infinite unless it can be passed on either side: a wall is a planner's job."""
+        left_m, right_m = (self._way_beside_m(a, b, side) for side in (1.0, -1.0))
+        return min(left_m, right_m) if max(left_m, right_m) < math.inf else math.inf
+
+    def _way_beside_m(self, a: Point, b: Point, side: float) -> float:
+        """The shortest way over one point on that side of the straight line."""
         dx, dy = (b[0] - a[0]) / math.dist(a, b), (b[1] - a[1]) / math.dist(a, b)
         for detour_m in DETOURS_M:
-            for side in (1.0, -1.0):
-                for share in (0.3, 0.5, 0.7):
-                    x, y = a[0] + share * (b[0] - a[0]) - side * detour_m * dy, a[1] + share * (b[1] - a[1]) + side * detour_m * dx
-                    if self._is_free((a, (x, y), b), WIDE_M):
-                        return math.dist(a, (x, y)) + math.dist((x, y), b)
+            for share in (0.3, 0.5, 0.7):
+                x, y = a[0] + share * (b[0] - a[0]) - side * detour_m * dy, a[1] + share * (b[1] - a[1]) + side * detour_m * dx
+                if self._is_free((a, (x, y), b), WIDE_M):
+                    return math.dist(a, (x, y)) + math.dist((x, y), b)
         return math.inf
 
     def _is_free(self, points: tuple[Point, ...], margin_m: float) -> bool:
