@@ -16,7 +16,7 @@ from pluto_bt.commands.inputs import Inputs
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
-from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wall_ns
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
 from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, MissionError, check_mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
@@ -50,12 +50,11 @@ class Runner:
 
     def run(self) -> RunResult:
         """Run to the end and sum up."""
-        begun_ns = wall_ns()
         self.system.run(self.mission)
-        self.result = self._sum_up((wall_ns() - begun_ns) / 1e9)
+        self.result = self._sum_up()
         return self.result
 
-    def _sum_up(self, wall_time_s: float) -> RunResult:
+    def _sum_up(self) -> RunResult:
         system, simulator = self.system, self.system.simulator
         result, reason, text = self._outcome()
         sample = system.board.newest("Localization/Pose")
@@ -65,11 +64,11 @@ class Runner:
         clearance_m = simulator.min_clearance_m
         activity = system.executive.core.mission
         return RunResult(
-            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=wall_time_s,
+            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=system.wall_time_s,
             ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
             hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
-            trace_sha256=system.trace.sha256(), leaves=self.mission.statuses(), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
+            trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
         )  # fmt: skip
 
@@ -125,6 +124,12 @@ def make_runner(
     topics.view = lambda: runner.system.robot.snapshot
     runner.mission.attach(runner.system.robot)
     return runner
+
+
+def _leaves(mission: Mission) -> dict[str, str]:
+    """The last status of each leaf, by path."""
+    paths = {tracked.path for tracked in mission.nodes() if not tracked.node.children}
+    return {path: status for path, status in mission.statuses().items() if path in paths}
 
 
 def _contact(contact: Any, kind: str) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.robot_link import RobotLink
-from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wait
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock, wait, wall_ns
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.table import Module, in_start_order
@@ -118,6 +118,7 @@ class System:
         self.simulator = Simulator(options.world, options.robot, options.seed, options.start)
         self.simulator.on_software_fault = self._on_software_fault
         self.ended: tuple[str, str, str] | None = None  # (result, reason, text) when something other than the mission ends the run
+        self.wall_time_s = 0.0  # from the first step to the last
         self._interrupt = threading.Event()
         self._parts: dict[str, Part] = {}
         self.inboxes = {link: Inbox(link, self._owner_rule(above)) for link, above in INBOXES.items()}
@@ -301,10 +302,12 @@ class System:
         """Run `mission` to its end, then bring the robot to rest. The outcome is in `ended` and in the executive."""
         self.executive.core.start(mission)
         self._start()
+        begun_ns = wall_ns()
         try:
             self._until(self._is_over)
             self._settle()
         finally:
+            self.wall_time_s = (wall_ns() - begun_ns) / NS
             if isinstance(self.scheduler, Threads):
                 self.scheduler.stop()
             for part in reversed(self._parts.values()):

@@ -23,7 +23,7 @@ def main(argv: list[str]) -> int:
     from pluto_bt.trees.dump import dump
 
     try:
-        print(dump(load_for_drawing(Request(args.mission, tree=args.tree, plugin=args.plugin)), args.format))
+        print(dump(load_for_drawing(Request(args.mission, tree=args.tree, plugin=args.plugin)), args.format, statuses=False))
     except InputError as error:
         print(error, file=sys.stderr)
         return 2
