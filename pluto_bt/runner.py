@@ -108,12 +108,12 @@ def make_runner(
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
     topics = TopicGlobals()
     of_file: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "file": str(inputs.mission_path)}
-    faults = check_mission(inputs.mission_path, nodes, topics=topics, plugins=inputs.plugins, **of_file)
+    faults = check_mission(inputs.mission_path, nodes, topics=topics, **of_file)
     if any(fault.severity == "error" for fault in faults):
         raise MissionError(faults)
 
     def load(text: str | Path, **more: Any) -> Mission:
-        return load_mission(text, nodes, clock, topics=topics, plugins=inputs.plugins, **more)
+        return load_mission(text, nodes, clock, topics=topics, **more)
 
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +28,7 @@ from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.source import PlutoError
+from pluto_bt.track import Track
 from pluto_bt.trees import Mission, load_mission
 
 # fmt: off
@@ -75,33 +76,6 @@ class Options:
     load: Callable[[str], Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
-
-
-@dataclass
-class TrackPoint:
-    """Where the robot really was."""
-
-    t_s: float
-    pose: tuple[float, float, float]
-
-
-@dataclass
-class Track:
-    """The true path of a run at 10 Hz, thinned by half whenever it gets long, so that a day of driving stays small."""
-
-    points: list[TrackPoint] = field(default_factory=list)
-    every: int = 1
-    seen: int = 0
-    limit: int = 20_000
-
-    def add(self, t_s: float, pose: tuple[float, float, float]) -> None:
-        """Take the next point of the path."""
-        if self.seen % self.every == 0:
-            self.points.append(TrackPoint(t_s, pose))
-            if len(self.points) >= self.limit:
-                self.points = self.points[::2]
-                self.every *= 2
-        self.seen += 1
 
 
 class System:

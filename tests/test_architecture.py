@@ -26,7 +26,7 @@ MAY = {
                        "estimation"),
 }  # fmt: skip
 TOP_FLOOR = ("pluto_bt.modules", "pluto_bt.commands", "pluto_bt.bench", "pluto_bt.platforms", "pluto_bt.system", "pluto_bt.runner", "pluto_bt.result",
-             "pluto_bt.scenario", "pluto_bt.pytest_plugin", "pluto_bt.cli", "pluto_bt.__main__", "pluto_bt.__init__")  # fmt: skip
+             "pluto_bt.track", "pluto_bt.scenario", "pluto_bt.pytest_plugin", "pluto_bt.cli", "pluto_bt.__main__", "pluto_bt.__init__")  # fmt: skip
 
 
 def package_of(name: str) -> str:

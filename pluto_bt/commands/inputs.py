@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from pluto_bt.commands.files import find_file
+from pluto_bt.commands.plugins import load_plugins
 from pluto_bt.maps.load import load_world
 from pluto_bt.maps.placement import placed_outline, what_stands_at
 from pluto_bt.maps.world import SetTopic, World
@@ -54,7 +55,6 @@ class Inputs:
     seed: int
     ports: dict[str, str]
     tree: str | None
-    plugins: tuple[str, ...]
 
 
 def add_input_options(parser: argparse.ArgumentParser) -> None:
@@ -84,13 +84,14 @@ def read_inputs(request: Request, beside: Path | None = None) -> Inputs:
     start = _start(request.start, faults)
     seed = _seed(request.seed, faults)
     ports = read_ports(request.port, faults)
+    load_plugins(request.plugin, faults)
     if world is not None and robot is not None:
         start = start or world.robot.pose or (0.0, 0.0, 0.0)
         _check_place(world, robot, start, Place(f"--start {request.start}") if request.start else world.robot.place, faults)
         _check_topics(world, faults)
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
-    return Inputs(mission_path, world, a_priori, robot, start, world.seed if seed is None else seed, ports, request.tree, tuple(request.plugin))
+    return Inputs(mission_path, world, a_priori, robot, start, world.seed if seed is None else seed, ports, request.tree)
 
 
 def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
