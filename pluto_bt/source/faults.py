@@ -95,8 +95,8 @@ class Faults:
 
     def _add(self, place: Place, severity: Severity, code: str, message: str, expected: str, found: str, mend: str) -> None:
         if len(self._faults) < self.LIMIT:
-            message, expected, found, mend = _short(message), _short(expected), _short(found), _short(mend)
-            self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
+            file, message, expected, found, mend = map(_quotable, (place.file, message, expected, found, mend))
+            self._faults.append(Fault(file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
 
     def extend(self, faults: Iterable[Fault]) -> None:
         """Take over faults found by another reader."""
@@ -140,9 +140,10 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f'did you mean "{by_lower[near[0]]}"?' if near else ""
 
 
-def _short(text: str, most: int = 600) -> str:
-    """A report quotes the input, which may hold a word of megabytes."""
-    return text if len(text) <= most else text[: most - 1] + "…"
+def _quotable(text: str, most: int = 600) -> str:
+    """A report quotes the input, which may hold a word of megabytes, or characters that play tricks on a terminal or are no Unicode text."""
+    text = text if len(text) <= most else text[: most - 1] + "…"
+    return text if text.isprintable() else "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def _window(line: str, column: int, width: int = 150) -> tuple[str, int]:
