@@ -29,8 +29,8 @@ def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) 
             return candidate
     found = "a folder" if os.path.isdir(name) else "no ordinary file" if os.path.lexists(name) else name or "nothing"
     known = sorted(path.name for path in shipped.iterdir() if path.suffix in endings)
-    faults.error(Place(name or f'{kind} ""'), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}", found=found,
-                 mend=did_you_mean(Path(name).name, known))  # fmt: skip
+    faults.error(Place(name or f'{kind} ""'), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}",
+                 found=found, mend=did_you_mean(Path(name).name, known))  # fmt: skip
     return None
 
 

@@ -11,7 +11,7 @@ from pluto_bt.commands.files import find_file
 from pluto_bt.commands.missions import load_plugins, mission_faults
 from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
 from pluto_bt.commands.world_checks import check_script, check_start, in_file
-from pluto_bt.maps.load import load_world
+from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
 from pluto_bt.source import Fault, Faults, InputError, Place
@@ -115,11 +115,7 @@ def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
     path = find_file("world", name, faults, beside)
     if path is None:
         return None
-    try:
-        return load_world(path, name if path == Path(name) else str(path), faults)
-    except InputError as error:
-        faults.extend(fault for fault in error.faults if fault.severity == "error")  # the warnings are taken over already
-        return None
+    return read_world(path, name if path == Path(name) else str(path), faults)
 
 
 def _robot(asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:

@@ -53,7 +53,7 @@ class Fault:
 
     def as_text(self) -> str:
         """The report a person reads: head line, caret line, then what was expected, found and how to mend it."""
-        where = self.file or "<text>"
+        where = _quotable(self.file) or "<text>"
         if self.line:
             where += f":{self.line}:{self.column}" if self.column else f":{self.line}"
         lines = [f"{where}: {self.severity}: {self.message}"]
@@ -66,7 +66,8 @@ class Fault:
     def as_json(self) -> dict[str, str | int]:
         """The fields of `check --format json` (DESIGN.md, section 4)."""
         names = ("file", "line", "column", "severity", "code", "message", "expected", "found", "mend")
-        return {name: getattr(self, name) for name in names}
+        fields = {name: getattr(self, name) for name in names}
+        return fields | {"file": self.file.encode("utf-8", "backslashreplace").decode()}  # file names need be no Unicode text
 
 
 class InputError(PlutoError):
@@ -95,8 +96,8 @@ class Faults:
 
     def _add(self, place: Place, severity: Severity, code: str, message: str, expected: str, found: str, mend: str) -> None:
         if len(self._faults) < self.LIMIT:
-            file, message, expected, found, mend = map(_quotable, (place.file, message, expected, found, mend))
-            self._faults.append(Fault(file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
+            message, expected, found, mend = map(_quotable, (message, expected, found, mend))
+            self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
 
     def extend(self, faults: Iterable[Fault]) -> None:
         """Take over faults found by another reader."""
