@@ -50,7 +50,7 @@ def _parser() -> Parser:
 def _check_options(args: argparse.Namespace, faults: Faults) -> None:
     """The faults of what serves all the files: plugins, and the world and the robot to check against."""
     from pluto_bt.commands.inputs import check_world
-    from pluto_bt.commands.missions import load_plugins
+    from pluto_bt.commands.plugins import load_plugins
 
     load_plugins(args.plugin, faults)
     if args.world is not None:

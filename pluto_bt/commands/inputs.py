@@ -8,8 +8,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from pluto_bt.commands.files import find_file
-from pluto_bt.commands.missions import load_plugins, mission_faults
+from pluto_bt.commands.missions import mission_faults
 from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
+from pluto_bt.commands.plugins import load_plugins
 from pluto_bt.commands.world_checks import check_script, check_start, in_file
 from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World

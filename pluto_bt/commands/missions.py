@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
 from collections.abc import Iterable, Mapping, Sequence
-from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
 from pluto_bt.commands.files import find_file
 from pluto_bt.commands.option_values import read_ports
-from pluto_bt.source import Fault, Faults, Place
+from pluto_bt.commands.plugins import load_plugins
+from pluto_bt.source import Fault, Faults
 
 
 def mission_faults(
@@ -31,24 +29,6 @@ def check_mission_file(name: str, tree: str | None, settings: Sequence[str], fau
     if path is not None:
         faults.extend(mission_faults(path, name, tree=tree, ports=ports or None))
     return path
-
-
-def load_plugins(modules: Sequence[str], faults: Faults) -> None:
-    """Import `--plugin` modules (also from the working folder) and installed entry points of the group `pluto_bt.nodes`."""
-    if modules and str(Path.cwd()) not in sys.path:
-        sys.path.insert(0, str(Path.cwd()))
-    for name in modules:
-        _import(name.removesuffix(".py"), f"--plugin {name}", faults)
-    for point in entry_points(group="pluto_bt.nodes"):
-        _import(point.value.partition(":")[0], f"entry point {point.name}", faults)
-
-
-def _import(name: str, asked_by: str, faults: Faults) -> None:
-    try:
-        importlib.import_module(name)
-    except (Exception, SystemExit) as error:  # a plugin may raise anything while it is imported
-        faults.error(Place(asked_by), "bad-plugin", f"cannot import {name}: {type(error).__name__}: {error}",
-                     mend="give the name of a Python module, found from the working folder")  # fmt: skip
 
 
 def load_for_drawing(name: str, tree: str | None, plugins: Sequence[str]) -> Any:

@@ -12,7 +12,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--format", choices=("table", "xml"), default="table")
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes are listed too")
     args = parser.parse_args(argv)
-    from pluto_bt.commands.missions import load_plugins
+    from pluto_bt.commands.plugins import load_plugins
     from pluto_bt.trees.dump import nodes_table, nodes_xml
 
     faults = Faults()

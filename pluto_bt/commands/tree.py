@@ -20,7 +20,7 @@ def main(argv: list[str]) -> int:
     from pluto_bt.commands.missions import load_for_drawing
     from pluto_bt.trees.dump import dump
 
-    print(dump(load_for_drawing(args.mission, args.tree, args.plugin), args.format))
+    print(dump(load_for_drawing(args.mission, args.tree, args.plugin), args.format, statuses=False))
     return 0
 
 

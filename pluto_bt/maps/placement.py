@@ -40,7 +40,7 @@ def _near(shapes: Sequence[Shape], outline_m: Points) -> Iterator[Shape]:
     low, high = np.minimum.reduceat(points, starts, axis=0) - reach_m, np.maximum.reduceat(points, starts, axis=0) + reach_m
     meets = np.all((low <= outline_m.max(axis=0)) & (high >= outline_m.min(axis=0)), axis=1)
     for i in np.flatnonzero(meets):
-        yield shapes[i]
+        yield shapes[int(i)]
 
 
 def _overlaps(shape: Shape, outline_m: Points) -> bool:
