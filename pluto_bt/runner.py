@@ -19,7 +19,7 @@ from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
 from pluto_bt.system import Options, System
-from pluto_bt.trees import Mission, MissionError, check_mission, load_mission
+from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 
 
@@ -72,6 +72,7 @@ class Runner:
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
             trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
+            faults=[fault.as_json() for fault in self.inputs.warnings],
         )  # fmt: skip
 
     def _outcome(self) -> tuple[str, str, str]:
@@ -103,16 +104,13 @@ def make_runner(
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
 ) -> Runner:
-    """Check and load the mission, then make the robot around it.
+    """Load the mission, which `read_inputs` has checked, then make the robot around it.
 
-    Raises: MissionError with all faults, also those that BehaviorTree.CPP finds only while ticking; nothing heavy was imported by then.
+    Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
     topics = TopicGlobals()
     of_file: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "file": str(inputs.mission_path)}
-    faults = check_mission(inputs.mission_path, nodes, topics=topics, **of_file)
-    if any(fault.severity == "error" for fault in faults):
-        raise MissionError(faults)
 
     def load(text: str | Path, **more: Any) -> Mission:
         return load_mission(text, nodes, clock, topics=topics, **more)
