@@ -40,7 +40,8 @@ class Executive:
         """Nothing to take."""
 
     def stop(self) -> None:
-        """Nothing to let go."""
+        """A mission that is not ticked watches over nothing: the robot waits until it is again."""
+        self._system.robot.stop()
 
     def say(self, level: str, code: str, source: str, text: str) -> None:
         """Queue a line for operators; any thread."""
