@@ -6,7 +6,6 @@ mission succeeds without a collision and that the robot really comes to each goa
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -62,7 +61,7 @@ class Drive:
 def drive(place: str, world: World, robot: RobotFile, course: Course, seed: int, max_time_s: float = LONGEST_S) -> Drive:
     """Run `patrol.xml` over a course."""
     ports = {"goals": course.goals_text}
-    inputs = Inputs(package_root() / "missions" / "patrol.xml", world, None, robot, course.start, seed, ports, None, ())
+    inputs = Inputs(package_root() / "missions" / "patrol.xml", world, None, robot, course.start, seed, ports, None)
     runner = make_runner(inputs, max_time_s=max_time_s)
     result = runner.run()
     track = np.array([(point.t_s, *point.pose) for point in runner.system.track.points])
