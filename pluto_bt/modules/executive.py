@@ -39,7 +39,8 @@ class Executive:
         """Nothing to take."""
 
     def stop(self) -> None:
-        """Nothing to let go."""
+        """Nobody decides any more: the robot stands."""
+        self.core.let_go()
 
     def say(self, level: str, code: str, source: str, text: str) -> None:
         """Queue a line for operators; any thread."""
