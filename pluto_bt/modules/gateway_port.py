@@ -18,8 +18,7 @@ from pluto_bt.trees import Mission, MissionError
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
-RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}
-STATE_OF_END = {"preempted": "preempted", "timeout": "timeout"}
+ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire
 ERRANDS_KEPT = 64
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 
@@ -119,9 +118,9 @@ class GatewayPort:
             self._system.executive.core.end_errand(activity, "timeout")
             return RunState("timeout", "timeout", "the deadline is over")
         if activity.state == ABORTED:
-            return RunState(STATE_OF_END.get(activity.reason, "cancelled"), activity.reason)
+            return RunState(activity.reason if activity.reason in ENDS else "cancelled", activity.reason)
         outputs = tuple(activity.mission.outputs().items()) if activity.is_over else ()
-        return RunState(RUN_STATES[activity.state], activity.reason, activity.text, outputs)
+        return RunState(RUNNING if activity.state == PAUSED else activity.state, activity.reason, activity.text, outputs)
 
     def cancel(self, run: str, reason: str) -> None:
         """End an errand with zero velocity."""

@@ -300,6 +300,6 @@ def test_release_lets_go_without_a_further_command(stage: Any) -> None:
 @pytest.mark.parametrize("x", [math.nan, math.inf])
 def test_a_goal_that_is_no_place_is_refused_by_the_port(stage: Any, x: float) -> None:
     mission = stage.load('<GoTo goal="{p}"/>', blackboard={"p": (x, 1.0)})
-    with pytest.raises(TickError, match="not a number|not finite"):
+    with pytest.raises(TickError, match=r"not a number|not finite"):
         stage.tick(mission)
     assert stage.robot.commands == []
