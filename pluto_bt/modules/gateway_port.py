@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
+import msgspec
+
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
 from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
@@ -127,9 +129,10 @@ class GatewayPort:
             self._system.executive.core.end_errand(errand.activity, reason)
 
     def mission_state(self) -> MissionState:
-        """The mission."""
-        sample = self._system.board.newest("mission/state")
-        return sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
+        """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
+        sample, coming = self._system.board.newest("mission/state"), self._system.executive.core.coming_state
+        known = sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
+        return known if known.state == coming else msgspec.structs.replace(known, state=coming, reason="")
 
     def mission_names(self) -> Sequence[str]:
         """The shipped missions."""
@@ -178,8 +181,8 @@ class GatewayPort:
             raise RefusedError("unknown-module", f'no module "{name}"') from None
 
     def _mission_runs(self) -> bool:
-        mission = self._system.executive.core.mission
-        return mission is not None and mission.state == RUNNING
+        state: str = self._system.executive.core.coming_state
+        return state == RUNNING
 
     def _refuse_if_latched(self) -> None:
         if self._estop is not None:

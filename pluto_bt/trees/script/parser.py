@@ -17,6 +17,7 @@ from pluto_bt.trees.script.terms import Assignment, Chain, Choice, Comparison, E
 from pluto_bt.trees.script.tokens import ScriptSyntaxError, Token, tokens_of
 
 MAX_DEPTH: Final = 50
+MAX_CHARACTERS: Final = 20_000
 ASSIGNMENTS: Final = (":=", "=", "+=", "-=", "*=", "/=")
 COMPARISONS: Final = ("==", "!=", "<", ">", "<=", ">=")
 LEVELS: Final = (("||",), ("&&",), COMPARISONS, ("|", "^"), ("&",), ("+", "-", ".."), ("*", "/"))
@@ -43,6 +44,8 @@ def parse_script(text: str) -> Program:
     """The program of a script. Raises ScriptSyntaxError with the position."""
     if text == "":
         return Program(text, ())
+    if len(text) > MAX_CHARACTERS:
+        raise ScriptSyntaxError(MAX_CHARACTERS, "the script is too long", expected=f"at most {MAX_CHARACTERS} characters", found=str(len(text)))
     return Program(text, tuple(_Parser(text).script()))
 
 
