@@ -22,7 +22,7 @@ class Parser(argparse.ArgumentParser):
         """Raises InputError, after the usage."""
         if sys.stderr is not None:
             self.print_usage(sys.stderr)
-        fail(Place(self.prog), "bad-usage", message, mend=self._nearest(message))
+        fail(Place(self.prog), "bad-usage", message, mend=self._nearest(message) or f"`{self.prog} --help` tells more")
 
     def _nearest(self, message: str) -> str:
         strange = re.search(r"unrecognized arguments: (--?[\w-]+)", message)
