@@ -84,6 +84,7 @@ MAPS = {
     "image is a folder": (ros_map(image="."), "1:8 no-file"),
     "image is a pipe": (ros_map(image="pipe.pgm"), "1:8 no-file"),
     "image cut off": (ros_map(image="cut.png"), "1:8 bad-image"),
+    "end cut off": (ros_map(image="endless.png"), "1:8 bad-image"),
     "pixels cut off": (ros_map(image="cut.pgm"), "1:8 bad-image"),
     "image empty": (ros_map(image="empty.pgm"), "1:8 bad-image"),
     "image of nothing": (ros_map(image="nothing.pgm"), "1:8 bad-image"),
@@ -121,6 +122,6 @@ def png(columns: int, rows: int, pixels: bytes) -> bytes:
 
 WHITE = png(50, 50, (b"\0" + b"\xfe" * 50) * 50)
 IMAGES = {
-    "good.png": WHITE, "cut.png": WHITE[:60], "bomb.png": png(60_000, 60_000, b"\0"), "empty.pgm": b"",
+    "good.png": WHITE, "cut.png": WHITE[:60], "endless.png": WHITE[:-8], "bomb.png": png(60_000, 60_000, b"\0"), "empty.pgm": b"",
     "cut.pgm": b"P5\n50 50\n255\n" + b"\0" * 100, "nothing.pgm": b"P5\n0 0\n255\n",
 }  # fmt: skip
