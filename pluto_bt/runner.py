@@ -14,6 +14,7 @@ from typing import Any
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.gateway.listen import parse_address
+from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
@@ -28,10 +29,11 @@ class Runner:
     def __init__(self, inputs: Inputs, mission: Mission, clock: VirtualClock | MonotonicClock, options: Options) -> None:
         self.inputs = inputs
         self.mission = mission
-        System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()).rehearse()
+        rehearse(System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()))
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
+        self.loop = Loop(self.system)
         self.result = RunResult(result="STOPPED")
 
     @contextmanager
@@ -41,7 +43,7 @@ class Runner:
             yield
             return
         numbers = (signal.SIGINT, signal.SIGTERM)
-        old = [signal.signal(number, lambda *unused: self.system.interrupt()) for number in numbers]
+        old = [signal.signal(number, lambda *unused: self.loop.interrupt()) for number in numbers]
         try:
             yield
         finally:
@@ -50,7 +52,7 @@ class Runner:
 
     def run(self) -> RunResult:
         """Run to the end and sum up."""
-        self.system.run(self.mission)
+        self.loop.run(self.mission)
         self.result = self._sum_up()
         return self.result
 
@@ -64,7 +66,7 @@ class Runner:
         clearance_m = simulator.min_clearance_m
         activity = system.executive.core.mission
         return RunResult(
-            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=system.wall_time_s,
+            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=self.loop.wall_time_s,
             ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
             hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
@@ -78,8 +80,8 @@ class Runner:
         system, activity = self.system, self.system.executive.core.mission
         if activity is not None and activity.error is not None:
             return "STOPPED", "leaf-error", activity.text
-        if system.ended is not None:
-            return system.ended
+        if system.guard.ended is not None:
+            return system.guard.ended
         if activity is None or activity.state == ABORTED:
             return "STOPPED", "stopped", "" if activity is None else activity.reason
         return ("SUCCESS" if activity.state == SUCCEEDED else "FAILURE"), activity.reason, activity.text

@@ -13,7 +13,7 @@ from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import Event
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
-from pluto_bt.system import TrackPoint
+from pluto_bt.track import TrackPoint
 
 
 @dataclass(frozen=True)

@@ -237,5 +237,3 @@ def _mend_literal(text: str, problem: str) -> str:
     if bare != text and bare:
         return "remove the blanks"
     return f"{problem}; {{{text}}} would read an entry" if text.isidentifier() else problem
-
-

@@ -38,14 +38,6 @@ class Program:
             value = statement.value(env)
         return value
 
-    def terms(self) -> Iterator[Term]:
-        """Every term, outer ones first."""
-        waiting = list(reversed(self.statements))
-        while waiting:
-            term = waiting.pop()
-            yield term
-            waiting.extend(reversed(list(term.parts())))
-
 
 @lru_cache(maxsize=4096)
 def parse_script(text: str) -> Program:
@@ -58,6 +50,8 @@ def parse_script(text: str) -> Program:
 
 
 class _Parser:
+    """One reading: the tokens, and how far it has come."""
+
     def __init__(self, text: str) -> None:
         self._tokens = tokens_of(text)
         self._at = 0
