@@ -9,9 +9,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from pluto_bt.behaviours.reasons import WAITING
+from pluto_bt.loop import THREADS_LIMIT_S
 from pluto_bt.modules.base import DEAD_MAN_S
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
-from pluto_bt.system import THREADS_LIMIT_S
 
 T_S = 6.0
 SPEED_MPS = 0.9

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -107,7 +108,7 @@ class Surveyor:
     def _is_free(self, points: tuple[Point, ...], margin_m: float) -> bool:
         """Whether the robot can drive from point to point, turning on the spot at each."""
         poses: list[Pose] = []
-        for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+        for (x0, y0), (x1, y1) in pairwise(points):
             bearing = math.atan2(y1 - y0, x1 - x0)
             poses += [(x0, y0, bearing), (x1, y1, bearing)]
         return path_is_clear(self._scene, self._outline, poses, margin_m) is None

@@ -31,8 +31,10 @@ MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the round
 
 def read_ros_map(path: Path, shown_name: str, faults: Faults) -> World | None:
     """The map as a world that has nothing but a grid, or None and faults."""
-    values, places = read_yaml(path, shown_name, faults)
-    if not values:
+    reading = Faults()
+    values, places = read_yaml(path, shown_name, reading)
+    faults.extend(reading.in_order())
+    if reading.has_errors:
         return None
     fields = _MapFields(values, places, faults)
     fields.warn_of_unknown_keys()
