@@ -16,7 +16,6 @@ from pluto_bt.blackboard.poses import pose_at
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 
-
 TOO_OLD = "too-old"  # nobody remembers where the robot pointed then
 
 

@@ -1,4 +1,4 @@
-"""Every fault of the table once, for ever, while a patrol drives past a post: never a contact of the robot's own making, and a word for what ended it."""
+"""Every fault of the table once, for ever, while a patrol drives past a post: never a contact of its own making, and a word for what ended it."""
 
 from __future__ import annotations
 
