@@ -11,6 +11,7 @@ import numpy as np
 
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.polygons import crossing, is_flat
+from pluto_bt.modules.alarms import AlarmsParameters
 from pluto_bt.modules.dmu import DmuParameters
 from pluto_bt.modules.local import LocalParameters
 from pluto_bt.modules.marker import MarkerParameters
@@ -33,6 +34,7 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     local: LocalParameters = LocalParameters()
     dmu: DmuParameters = DmuParameters()
+    alarms: AlarmsParameters = AlarmsParameters()
     marker: MarkerParameters = MarkerParameters()
 
 

@@ -77,6 +77,10 @@ class RobotLink:
         rates, accelerations = (rate_radps, rate_radps), (acceleration_radps2, acceleration_radps2)
         self._context.inboxes["wrist"].post(SOURCE, ActuatorState(now_s, 0, (pan_rad, tilt_rad), rates, accelerations))
 
+    def read_alarms(self) -> None:
+        """Leave a letter for the module `alarms`."""
+        self._context.inboxes["alarms"].post(SOURCE, ActuatorState(self._context.clock.now_s()))
+
     def say(self, text: str) -> None:
         """A line for operators."""
         self._context.say("info", "say", SOURCE, text)
