@@ -16,6 +16,8 @@ from pluto_bt.behaviours.topic_compare import TopicCompare, WaitFor
 from pluto_bt.behaviours.velocity import DriveVelocity, HoldHeading
 from pluto_bt.behaviours.wrist import PointWrist
 
-ACTIONS: Final[tuple[type[Leaf], ...]] = (GoTo, CarGoTo, MakeTurn, DriveVelocity, HoldHeading, Stop, Release, PointWrist, TryTurn, ReadAlarms, WaitFor, Say)
+ACTIONS: Final[tuple[type[Leaf], ...]] = (
+    GoTo, CarGoTo, MakeTurn, DriveVelocity, HoldHeading, Stop, Release, PointWrist, TryTurn, ReadAlarms, WaitFor, Say,
+)  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS)

@@ -20,19 +20,28 @@ PATIENCE_S: Final = 3.0  # beyond the time that the turn should take
 
 
 class ReadAlarms(Leaf):
-    """Takes back the alarms of stasis and stuck wheels, so that new ones can be raised; SUCCESS."""
+    """Takes back the alarms of stasis and stuck wheels, so that new ones can be raised; SUCCESS once they are gone."""
 
     INPUT_PORTS = NO_PORTS
     OUTPUT_PORTS = NO_PORTS
 
+    def initialise(self) -> None:
+        """The letter goes out in the first `update`."""
+        self._words = ""
+        self._posted_s: float | None = None
+
     def update(self) -> Status:
-        """At once."""
+        """Read, then wait for a newer state, so that the next leaf does not see the old alarm."""
         robot = self.robot
         if robot is None:
             return self.fail("not-connected", "no robot")
         alarms = robot.newest("imu/alarms")
-        robot.read_alarms()
-        return self.succeed(alarm_words(alarms) if isinstance(alarms, AlarmState) else "no alarms")
+        if not isinstance(alarms, AlarmState) or robot.is_stale("imu/alarms"):
+            return self.succeed("no alarms known")
+        if self._posted_s is None:
+            self._posted_s, self._words = self.now_s(), alarm_words(alarms)
+            robot.read_alarms()
+        return self.succeed(self._words) if alarms.stamp_s > self._posted_s else self.wait(self._words)
 
 
 class TryTurn(MotionLeaf):
