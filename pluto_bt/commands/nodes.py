@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-
 from pluto_bt.commands.options import Parser
-from pluto_bt.source import Faults, InputError
+from pluto_bt.source import Faults
 
 
 def main(argv: list[str]) -> int:
@@ -19,10 +17,6 @@ def main(argv: list[str]) -> int:
 
     faults = Faults()
     load_plugins(args.plugin, faults)
-    try:
-        faults.raise_errors()
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    faults.raise_errors()
     print(nodes_table() if args.format == "table" else nodes_xml())
     return 0

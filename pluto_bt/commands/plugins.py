@@ -26,6 +26,6 @@ def load_plugins(modules: Sequence[str], faults: Faults) -> None:
 def _import(name: str, asked_by: str, faults: Faults) -> None:
     try:
         importlib.import_module(name)
-    except Exception as error:  # a plugin may raise anything while it is imported
+    except (Exception, SystemExit) as error:  # a plugin may raise anything while it is imported
         faults.error(Place(asked_by), "bad-plugin", f"cannot import {name}: {type(error).__name__}: {error}",
                      mend="give the name of a Python module, found from the working folder")  # fmt: skip

@@ -11,10 +11,10 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from estimation.se2 import wrap_angle
 from estimation.stasis import Stasis, StuckWheels, tilt_rad
 from pluto_bt.blackboard.messages import ActuatorState, AlarmState, ImuState
 from pluto_bt.blackboard.topics import TOPICS
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import newest
 
