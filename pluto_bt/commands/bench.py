@@ -14,6 +14,7 @@ BENCHES = {
     "tick": "a tick of the tree against stock py_trees",
     "repeat": "runs with one seed: equal traces",
     "startup": "`pluto --help` and the first tick of a mission",
+    "jbot": "1000 feet out and back between trees: where the robot believes to be",
     "memory": "memory of an hour's simulated run",
 }
 

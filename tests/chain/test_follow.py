@@ -109,7 +109,7 @@ def test_one_who_crosses_between_does_not_take_the_robot_with_him() -> None:
 
 
 def test_one_who_is_hidden_for_three_seconds_is_found_again() -> None:
-    follow, distances, state = play({"guide": lambda t: None if 8.0 <= t < 11.0 else straight(t)}, 30.0)
+    _, distances, state = play({"guide": lambda t: None if 8.0 <= t < 11.0 else straight(t)}, 30.0)
     assert state is Search.SEEN and distances[-1] < 1.8
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -48,7 +49,7 @@ def test_every_fault_of_the_file_is_told_at_its_place(file: Path, text: str, fau
 
 
 def test_a_file_that_is_not_there_is_a_fault() -> None:
-    with pytest.raises(InputError, match='there is no calibration file "nowhere.toml"'):
+    with pytest.raises(InputError, match=r'there is no calibration file "nowhere\.toml"'):
         load_robot_file("atrv2", ("drive.calibration_file=nowhere.toml",))
 
 
@@ -90,7 +91,7 @@ def test_the_simulated_base_reckons_with_it_from_then_on() -> None:
             at_once = ways[-1]
             base.calibrate(2.0 * figures.counts_per_m, robot.body.track_m)
     assert ways[-1] - at_once == pytest.approx(0.5 * 2.5, rel=0.05), "half of what it really drives"
-    assert max(b - a for a, b in zip(ways, ways[1:], strict=False)) < 0.02, "no jump"
+    assert max(b - a for a, b in pairwise(ways)) < 0.02, "no jump"
 
 
 def test_a_robot_with_a_wrong_calibration_file_thinks_that_it_went_farther(scenario: Play, tmp_path: Path) -> None:
