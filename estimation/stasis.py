@@ -46,27 +46,35 @@ class Stasis:
 
 
 class StuckWheels:
-    """Wheels that are told to turn, for `after_s` without a break, and do not. The alarm stays until `read` takes it."""
+    """Wheels that are told to turn, for `after_s` in all, and do not. The alarm stays until `read` takes it.
 
-    __slots__ = ("_since_s", "after_s", "alarm", "still_mps", "still_radps")
+    Short rests between the tries count neither way, for whoever protects the motors lets them rest and try again; wheels that move, or
+    `FORGET_S` without a command, begin the count anew.
+    """
+
+    FORGET_S = 3.0
+
+    __slots__ = ("_last_s", "_told_at_s", "_told_s", "after_s", "alarm", "still_mps", "still_radps")
 
     def __init__(self, after_s: float = 1.0, still_mps: float = 0.01, still_radps: float = 0.02) -> None:
         self.after_s, self.still_mps, self.still_radps = after_s, still_mps, still_radps
         self.alarm = False
-        self._since_s: float | None = None
+        self._told_s = 0.0
+        self._last_s = self._told_at_s = -math.inf
 
     def step(self, now_s: float, commanded: tuple[float, float], measured: tuple[float, float]) -> None:
-        """One look at the command in force and the encoders' velocities: m/s and rad/s each. Commands below `still` say nothing."""
+        """One look at the command in force and the encoders' velocities: m/s and rad/s each. Commands below 2 `still` say nothing."""
+        dt_s, self._last_s = min(now_s - self._last_s, self.after_s / 4.0), now_s
         is_told = abs(commanded[0]) > 2.0 * self.still_mps or abs(commanded[1]) > 2.0 * self.still_radps
-        stands = abs(measured[0]) < self.still_mps and abs(measured[1]) < self.still_radps
-        if not (is_told and stands):
-            self._since_s = None
-        elif self._since_s is None:
-            self._since_s = now_s
-        elif now_s - self._since_s >= self.after_s:
-            self.alarm = True
+        if abs(measured[0]) >= self.still_mps or abs(measured[1]) >= self.still_radps or now_s - self._told_at_s > self.FORGET_S:
+            self._told_s = 0.0
+            self._told_at_s = now_s
+        elif is_told:
+            self._told_s += dt_s
+            self._told_at_s = now_s
+        self.alarm = self.alarm or self._told_s >= self.after_s - 1e-9
 
     def read(self) -> bool:
         """Whether there was an alarm since the last call; takes it back, and begins to look anew."""
-        was, self.alarm, self._since_s = self.alarm, False, None
+        was, self.alarm, self._told_s = self.alarm, False, 0.0
         return was

@@ -128,6 +128,8 @@ class Follow:
         too_far_m = away_m - keep_m
         self._drives = too_far_m > (HYSTERESIS_M / 3.0 if self._drives else HYSTERESIS_M)
         if not self._drives:
+            if self.state(now_s) is Search.HIDDEN:  # at the place itself: look where he went
+                turn_rad = math.remainder(math.atan2(self.target.vy_mps, self.target.vx_mps) - robot[2], math.tau)
             return Aim((x, y), 0.0, turn_rad, away_m)
         share = too_far_m / away_m
         flees_mps = max(0.0, (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m)

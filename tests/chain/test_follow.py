@@ -130,6 +130,13 @@ def test_near_enough_it_stands_and_turns_to_the_target() -> None:
     assert aim.speed_mps == 0.0 and aim.turn_rad == pytest.approx(math.atan2(1.2, 1.7), abs=0.1)
 
 
+def test_where_he_was_seen_last_the_robot_looks_where_he_went() -> None:
+    follow, _, _ = play({"guide": lambda t: (3.0, 0.5 * t) if t < 5.0 else None}, 7.5)
+    assert follow.state(7.5) is Search.HIDDEN
+    x, y = follow.target.at(7.5) if follow.target is not None else (math.nan, math.nan)
+    assert follow.aim((x - 0.2, y, 0.0), 7.5).turn_rad == pytest.approx(math.pi / 2, abs=0.2)
+
+
 def test_a_pause_does_not_count() -> None:
     follow, _, _ = play({"guide": straight}, 6.0)
     assert follow.state(20.0) is Search.LOST

@@ -82,18 +82,39 @@ def test_it_agrees_with_the_article(steps: list[tuple[float, float]]) -> None:
     assert alarms == article(steps)
 
 
-def test_wheels_are_stuck_after_a_second_of_commands_without_a_break() -> None:
+def look(stuck: StuckWheels, from_s: float, count: int, commanded: tuple[float, float], measured: tuple[float, float] = (0.0, 0.0)) -> float:
+    """`count` looks, 0.1 s apart; the time of the next one."""
+    for i in range(count):
+        stuck.step(from_s + 0.1 * i, commanded, measured)
+    return from_s + 0.1 * count
+
+
+@pytest.mark.parametrize("commanded", [(0.3, 0.0), (0.0, -0.5)])
+def test_wheels_are_stuck_after_a_second_of_commands(commanded: tuple[float, float]) -> None:
     stuck = StuckWheels(1.0)
-    for i in range(10):
-        stuck.step(0.1 * i, (0.3, 0.0), (0.0, 0.0))
-    stuck.step(1.0, (0.3, 0.0), (0.05, 0.0))  # they moved: it begins anew
-    for i in range(11, 21):
-        stuck.step(0.1 * i, (0.0, 0.5), (0.0, 0.0))
-        assert not stuck.alarm
-    stuck.step(2.1, (0.0, 0.5), (0.0, 0.0))
+    now_s = look(stuck, 0.0, 10, commanded)
+    assert not stuck.alarm
+    now_s = look(stuck, now_s, 1, commanded, (0.05, 0.0))  # they moved: it begins anew
+    now_s = look(stuck, now_s, 9, commanded)
+    assert not stuck.alarm
+    now_s = look(stuck, now_s, 1, commanded)
     assert stuck.alarm
-    stuck.step(2.2, (0.0, 0.0), (0.0, 0.0))
+    look(stuck, now_s, 5, (0.0, 0.0))
     assert stuck.read() and not stuck.alarm
+
+
+def test_rests_between_the_tries_count_neither_way_but_a_long_one_begins_anew() -> None:
+    stuck, now_s = StuckWheels(1.0), 0.0
+    for _ in range(2):
+        now_s = look(stuck, now_s, 4, (0.3, 0.0))
+        now_s = look(stuck, now_s, 10, (0.0, 0.0))
+        assert not stuck.alarm
+    now_s = look(stuck, now_s, 4, (0.3, 0.0))
+    assert stuck.read()
+    now_s = look(stuck, now_s, 9, (0.3, 0.0))
+    now_s = look(stuck, now_s, 32, (0.0, 0.0))
+    look(stuck, now_s, 8, (0.3, 0.0))
+    assert not stuck.alarm
 
 
 def test_standing_without_a_command_or_with_a_tiny_one_is_no_sign() -> None:

@@ -43,10 +43,25 @@ def test_the_guide_is_followed_although_somebody_crosses_between(follow: Any, pl
 
 def test_round_a_corner_he_is_out_of_sight_and_found_again(follow: Any) -> None:
     corner = '<polygon id="block">4,1.2 9,1.2 9,6 4,6</polygon>'
-    guide = '<actor id="guide" r="0.25" speed="0.5">3,0 11,0 11,4.5</actor>'
+    guide = '<actor id="guide" r="0.25" speed="0.75">3,0 10,0 10,3 17,3</actor>'
     run = follow(corner + guide, ports={"d": 28.0})
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
-    assert math.dist(run.final_pose[:2], (11.0, 4.5)) < 2.4
+    hidden = [point.t_s for point in run.track if is_hidden(point.pose, along(0.75 * point.t_s))]
+    assert len(hidden) > 10, "for more than a second"
+    assert math.dist(run.final_pose[:2], (17.0, 3.0)) < 2.4
+
+
+def along(way_m: float) -> tuple[float, float]:
+    """Where the guide is after so much way."""
+    return (3.0 + way_m, 0.0) if way_m < 7.0 else (10.0, way_m - 7.0) if way_m < 10.0 else (min(way_m, 17.0), 3.0)
+
+
+def is_hidden(robot: tuple[float, float, float], guide: tuple[float, float]) -> bool:
+    """True if the block's corner at (9, 1.2) stands between robot and guide."""
+    if not robot[0] < 9.0 < guide[0]:
+        return False
+    share = (9.0 - robot[0]) / (guide[0] - robot[0])
+    return robot[1] + share * (guide[1] - robot[1]) > 1.2
 
 
 def test_a_guide_who_vanishes_is_given_up(follow: Any) -> None:
