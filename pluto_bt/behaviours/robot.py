@@ -29,6 +29,10 @@ class Robot(Protocol):
     def map(self) -> World | None:
         """The a-priori map."""
 
+    @property
+    def resumes(self) -> int:
+        """How often the mission has gone on after a pause; a motion leaf that sees it grow commands again."""
+
     def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
         """Post a command to motion; within one tick the newest wins. `tolerance_m` 0 = avoidance's own."""
 

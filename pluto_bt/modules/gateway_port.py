@@ -63,8 +63,8 @@ class GatewayPort:
 
     def stop(self, source: str) -> None:
         """Zero velocity at once; a running mission pauses."""
-        self._system.stop_robot(source)
         self._system.executive.core.pause("operator-stop")
+        self._system.stop_robot(source)
 
     def estop(self, source: str, reason: str) -> None:
         """As stop, latched until released."""
