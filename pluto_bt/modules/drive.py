@@ -20,7 +20,7 @@ class Drive:
     def __init__(self, context: Context) -> None:
         self._link = Link(context, "drive", "drive")
         self._clock = context.clock
-        self._base = context.inboxes["base"]
+        self._base = context.inboxes["filter"]
         self._skill = Skill(context.platform, context.parameters(DriveParameters))
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._sonar = newest(context, "ATRV2/Sonar")
