@@ -58,11 +58,12 @@ class Filter:
         letter = self._inbox.take()
         if letter is None and self._latch.held is None and now_s - self._stepped_s < IDLE_S:
             return
-        self._stepped_s = now_s
         if letter is not None:
             self._wanted, self._commanded_s = STILL if letter.is_stop else letter.command.velocity, now_s
         senses = self._senses()
-        self.skill.look(now_s, senses)
+        if now_s > self._stepped_s:  # two commands of one moment need one look
+            self.skill.look(now_s, senses)
+        self._stepped_s = now_s
         held = self._held(letter, now_s)
         out = self.skill.step(self._wanted, now_s, senses) if held is None else self.skill.hold(held)
         if letter is not None and letter.is_stop:

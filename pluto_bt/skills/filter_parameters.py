@@ -27,7 +27,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     sonar_stale_s: Annotated[Positive, Meta(description="older echoes do not count")] = 0.35
     without_sonar_mps: Annotated[NotNegative, Meta(description="speed while the sonar cannot be trusted")] = 0.3
     odometry_stale_s: Annotated[Positive, Meta(description="older odometry, or an older pose, means zero velocity")] = 0.25
-    wheels_still_s: Annotated[Positive, Meta(description="encoders that stand still so long though the wheels are told to turn mean zero velocity")] = 0.3
+    wheels_still_s: Annotated[Positive, Meta(description="wheels told to turn whose encoders stand still so long are stopped")] = 0.3
     retry_s: Annotated[Positive, Meta(description="after so long at rest the wheels may try again")] = 1.0
     command_stale_s: Annotated[Positive, Meta(description="without a command for so long the velocity is zero")] = 0.22
     executive_silent_s: Annotated[Positive, Meta(description="without a step of the executive for so long the velocity is zero")] = 0.23

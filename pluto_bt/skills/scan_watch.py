@@ -53,7 +53,8 @@ class ScanWatch:
     def verdict(self, now_s: float) -> Verdict:
         """Why the laser cannot be trusted now; ALL_WELL if it can."""
         if self._last is not None and now_s - self._last.stamp_s > self._stale_s and self._fault.code != LinkStatus.LASER_FATAL:
-            self._fault, self._good_in_a_row = _bad(f"the newest scan was taken {now_s - self._last.stamp_s:.2f} s ago; {self._stale_s:.2f} s are allowed"), 0
+            self._fault = _bad(f"the newest scan was taken {now_s - self._last.stamp_s:.2f} s ago; {self._stale_s:.2f} s are allowed")
+            self._good_in_a_row = 0
         return self._fault
 
     def _judge(self, scan: LaserScan, laser: Planar | None) -> Verdict:

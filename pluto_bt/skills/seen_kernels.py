@@ -1,7 +1,7 @@
-"""The hot loops of `SeenSpace`. A space is two arrays over square cells, in the frame of dead reckoning:
+"""The hot loops of `SeenSpace`. A space is three arrays over square cells, in the frame of dead reckoning:
 
-`seen` (n, n): when the cell was last seen to be free, s (-inf = never). `hits` (2, n, n, 3): when something was last seen in the cell, and where
-(s, x m, y m), for two heights: LEVEL, the plane of the laser, and LOW, what only the sonar hears or a scan that looks down sees.
+`seen` (n, n): when the cell was last seen to be free, s. `stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2):
+where, x m, y m; for two heights: LEVEL, the plane of the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pluto_bt.skills.outline import Array
 
 CELL_M = 0.05
 LEVEL, LOW = 0, 1
-STAMP, X, Y = range(3)
+X, Y = range(2)
 NEVER = -1e18
 BEAM_SLACK_M = 0.05  # a beam that ends so little beyond a point does not prove that the point is gone: three sigma of an LMS200 and more
 CONE_SLACK_M = 0.12  # the same for an echo
@@ -24,7 +24,7 @@ INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot i
 @inline_kernel
 def cell_of(x_m: float, corner_m: float) -> int:
     """The row or column of a coordinate."""
-    return int(math.floor((x_m - corner_m) / CELL_M))
+    return int(math.floor((x_m - corner_m) / CELL_M))  # noqa: RUF046  # a kernel's floor gives a float
 
 
 @inline_kernel
@@ -36,7 +36,7 @@ def cells_of(apex_m: float, axis_m: float, side_m: float, corner_m: float, n: in
 
 @kernel
 def see_beams(
-    seen: Array, hits: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, first_rad: float, step_rad: float,
+    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, first_rad: float, step_rad: float,
     ranges_m: Array, believed: Array, stamp_s: float, most_m: float,
 ) -> None:  # fmt: skip
     """Take a level scan from (x, y): what the beams run through is free, where they end something stands.
@@ -62,29 +62,31 @@ def see_beams(
             if along_m < 0.0 or not 0 <= column < seen.shape[1] or not 0 <= row < seen.shape[0]:
                 break
             seen[row, column] = stamp_s
-            if hits[LEVEL, row, column, STAMP] > NEVER and hits[LEVEL, row, column, STAMP] < stamp_s:
-                if math.hypot(hits[LEVEL, row, column, X] - x_m, hits[LEVEL, row, column, Y] - y_m) < free_m:
-                    hits[LEVEL, row, column, STAMP] = NEVER
+            is_older = stamps[LEVEL, row, column] > NEVER and stamps[LEVEL, row, column] < stamp_s
+            if is_older and math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
+                stamps[LEVEL, row, column] = NEVER
     for i in range(n):
         range_m = ranges_m[i]
         if range_m > 0.0 and range_m < most_m and believed[i] != 0.0:
             x, y = x_m + range_m * math.cos(first_rad + i * step_rad), y_m + range_m * math.sin(first_rad + i * step_rad)
-            put(hits, LEVEL, corner_x_m, corner_y_m, x, y, x_m, y_m, stamp_s)
+            put(stamps, spots, LEVEL, corner_x_m, corner_y_m, x, y, x_m, y_m, stamp_s)
 
 
 @inline_kernel
-def put(hits: Array, layer: int, corner_x_m: float, corner_y_m: float, x: float, y: float, from_x: float, from_y: float, stamp_s: float) -> None:
+def put(
+    stamps: Array, spots: Array, layer: int, corner_x_m: float, corner_y_m: float, x: float, y: float, from_x: float, from_y: float, stamp_s: float
+) -> None:
     """Note a point; of several in one cell at one time the nearest to the sensor."""
     column, row = cell_of(x, corner_x_m), cell_of(y, corner_y_m)
-    if 0 <= column < hits.shape[2] and 0 <= row < hits.shape[1]:
-        is_new = hits[layer, row, column, STAMP] != stamp_s
-        if is_new or math.hypot(x - from_x, y - from_y) < math.hypot(hits[layer, row, column, X] - from_x, hits[layer, row, column, Y] - from_y):
-            hits[layer, row, column, STAMP], hits[layer, row, column, X], hits[layer, row, column, Y] = stamp_s, x, y
+    if 0 <= column < stamps.shape[2] and 0 <= row < stamps.shape[1]:
+        is_new = stamps[layer, row, column] != stamp_s
+        if is_new or math.hypot(x - from_x, y - from_y) < math.hypot(spots[layer, row, column, X] - from_x, spots[layer, row, column, Y] - from_y):
+            stamps[layer, row, column], spots[layer, row, column, X], spots[layer, row, column, Y] = stamp_s, x, y
 
 
 @kernel
 def hear_cones(
-    seen: Array, hits: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float, stamp_s: float, most_m: float
+    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float, stamp_s: float, most_m: float
 ) -> None:
     """Take a round of the sonar ring.
 
@@ -97,7 +99,7 @@ def hear_cones(
     for clears in (1, 0):
         for k in range(cones.shape[0]):
             x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
-            if clears == 0 and (echo_m >= most_m or is_explained(hits, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
+            if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
                 continue
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
@@ -111,33 +113,33 @@ def hear_cones(
                         continue
                     if clears == 1:
                         if away_m < clear_m:
-                            clear_cell(seen, hits, row, column, stamp_s)
+                            clear_cell(seen, stamps, row, column, stamp_s)
                     elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
-                        put(hits, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, stamp_s)
+                        put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, stamp_s)
 
 
 @inline_kernel
-def clear_cell(seen: Array, hits: Array, row: int, column: int, stamp_s: float) -> None:
+def clear_cell(seen: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
     """The sonar hears through a cell: what was heard there is gone, and so is what the laser saw there long ago."""
     seen[row, column] = stamp_s
-    hits[LOW, row, column, STAMP] = NEVER
-    if hits[LEVEL, row, column, STAMP] < stamp_s - FRESH_S:
-        hits[LEVEL, row, column, STAMP] = NEVER
+    stamps[LOW, row, column] = NEVER
+    if stamps[LEVEL, row, column] < stamp_s - FRESH_S:
+        stamps[LEVEL, row, column] = NEVER
 
 
 @inline_kernel
-def is_explained(hits: Array, corner_x_m: float, corner_y_m: float, cones: Array, k: int, half_cone_rad: float) -> bool:
+def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, k: int, half_cone_rad: float) -> bool:
     """Whether the laser knows of something in the cone about as near as the echo."""
     x_m, y_m, reach_m, opening = cones[k, 0], cones[k, 1], cones[k, 3] + 2.0 * CONE_SLACK_M, math.tan(half_cone_rad)
     c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
     found = False
-    column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, hits.shape[2])
-    row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, hits.shape[1])
+    column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, stamps.shape[2])
+    row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, stamps.shape[1])
     for row in range(row_0, row_1):
         for column in range(column_0, column_1):
-            if hits[LEVEL, row, column, STAMP] > NEVER:
-                dx, dy = hits[LEVEL, row, column, X] - x_m, hits[LEVEL, row, column, Y] - y_m
+            if stamps[LEVEL, row, column] > NEVER:
+                dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
                 ahead_m, aside_m = c * dx + s * dy, abs(c * dy - s * dx)
                 if dx * dx + dy * dy < reach_m * reach_m and aside_m < ahead_m * opening + CELL_M:
                     found = True
@@ -146,8 +148,8 @@ def is_explained(hits: Array, corner_x_m: float, corner_y_m: float, cones: Array
 
 @kernel
 def stand(
-    seen: Array, hits: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float, planes: Array, reach_m: float,
-    grown_m: float, stamp_s: float, hits_since_s: float, window_m: float, out: Array,
+    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float, planes: Array,
+    reach_m: float, grown_m: float, stamp_s: float, hits_since_s: float, window_m: float, out: Array,
 ) -> int:  # fmt: skip
     """Where the robot stands (and `grown_m` around) is free; gather the points around it.
 
@@ -164,12 +166,12 @@ def stand(
             if dx * dx + dy * dy < near_m * near_m and outside_m(planes, c * dx + s * dy, c * dy - s * dx) < grown_m:
                 seen[row, column] = stamp_s
             for layer in range(2):
-                if hits[layer, row, column, STAMP] == NEVER:
+                if stamps[layer, row, column] == NEVER:
                     continue
-                dx, dy = hits[layer, row, column, X] - x_m, hits[layer, row, column, Y] - y_m
+                dx, dy = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
                 px, py = c * dx + s * dy, c * dy - s * dx
-                if hits[layer, row, column, STAMP] < hits_since_s or outside_m(planes, px, py) < INSIDE_M:
-                    hits[layer, row, column, STAMP] = NEVER
+                if stamps[layer, row, column] < hits_since_s or outside_m(planes, px, py) < INSIDE_M:
+                    stamps[layer, row, column] = NEVER
                 elif count < out.shape[0]:
                     out[count, 0], out[count, 1], out[count, 2] = px, py, layer
                     count += 1

@@ -12,7 +12,7 @@ import numpy as np
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, STAMP, hear_cones, put, see_beams, stand
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, hear_cones, put, see_beams, stand
 
 ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
 MOST_POINTS = 4000
@@ -29,7 +29,8 @@ class SeenSpace:
         n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
         self._outline, self._hear_m, self._reach_m = outline, hear_m, reach_m
         self.seen: Array = np.full((n, n), NEVER)
-        self.hits: Array = np.full((2, n, n, 3), NEVER)
+        self.stamps: Array = np.full((2, n, n), NEVER)
+        self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
         self.count = 0
         self._corner = (0, 0)  # of the lower left cell, in cells
@@ -43,7 +44,7 @@ class SeenSpace:
         return self._corner[0] * CELL_M, self._corner[1] * CELL_M
 
     def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
-        """Take a scan from where the laser was; its yaw includes the wrist's pan. A scan that looks down finds low things, and proves nothing free."""
+        """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free."""
         ranges, first, step = scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad
         if abs(tilt_rad) > LEVEL_RAD:
             self._last_ranges_m = None
@@ -51,7 +52,10 @@ class SeenSpace:
             return
         believed = self._believed(ranges)
         self._last_ranges_m = ranges
-        see_beams(self.seen, self.hits, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed, scan.stamp_s, self._reach_m)
+        see_beams(
+            self.seen, self.stamps, self.spots, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed,
+            scan.stamp_s, self._reach_m,
+        )  # fmt: skip
 
     def _add_tilted(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
@@ -60,7 +64,7 @@ class SeenSpace:
         c, s = math.cos(laser[2]), math.sin(laser[2])
         x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * np.sin(angles))[usable]
         for px, py in zip((laser[0] + c * x - s * y).tolist(), (laser[1] + s * x + c * y).tolist(), strict=True):
-            put(self.hits, LOW, *self.corner_m, px, py, laser[0], laser[1], scan.stamp_s)
+            put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], scan.stamp_s)
 
     def _believed(self, ranges: Array) -> Array:
         """(n,) 1 where the end of a beam is believed; 0 for a lone short one (dazzle, a leaf) that the scan before does not confirm."""
@@ -85,23 +89,22 @@ class SeenSpace:
         c, s = math.cos(robot[2]), math.sin(robot[2])
         x, y = robot[0] + c * axes[:, 0] - s * axes[:, 1], robot[1] + s * axes[:, 0] + c * axes[:, 1]
         cones = np.column_stack((x, y, axes[:, 2] + robot[2], np.maximum(echoes, leaves_m), clear_m, leaves_m))
-        most_m = min(self._hear_m, sonar.max_range_m - 0.01)
-        hear_cones(self.seen, self.hits, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
+        most_m = min(self._hear_m, self._reach_m, sonar.max_range_m - 0.01)
+        hear_cones(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
         self._rounds = []
 
     def stand(self, robot: Planar, grown_m: float, now_s: float, obstacles_since_s: float, window_m: float) -> None:
-        """The robot stands here: its place is free. Roll along, and gather the points within `window_m` into `points`."""
-        self._roll(robot)
+        """The robot stands here: its place is free. Gather the points within `window_m` into `points`."""
         outline = self._outline
         self.count = stand(
-            self.seen, self.hits, *self.corner_m, *robot, outline.planes, outline.reach_m, grown_m, now_s, obstacles_since_s,
+            self.seen, self.stamps, self.spots, *self.corner_m, *robot, outline.planes, outline.reach_m, grown_m, now_s, obstacles_since_s,
             max(window_m, outline.reach_m + grown_m + CELL_M), self.points,
         )  # fmt: skip
 
-    def _roll(self, robot: Planar) -> None:
+    def roll(self, robot: Planar) -> None:
         """Keep the robot in the middle; what leaves the cells is forgotten."""
         at = (math.floor(robot[0] / CELL_M), math.floor(robot[1] / CELL_M))
         if self._middle is not None and max(abs(at[0] - self._middle[0]), abs(at[1] - self._middle[1])) <= ROLL_CELLS:
@@ -111,12 +114,13 @@ class SeenSpace:
         moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
         self._corner, self._middle = corner, at
         self.seen = _shifted(self.seen, *moved)
-        self.hits = np.stack([_shifted(layer, *moved) for layer in self.hits])
+        self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
+        self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
 
     @property
     def is_empty(self) -> bool:
         """True while nothing stands in the cells."""
-        return not bool((self.hits[..., STAMP] > NEVER).any())
+        return not bool((self.stamps > NEVER).any())
 
 
 def _shifted(cells: Array, columns: int, rows: int) -> Array:

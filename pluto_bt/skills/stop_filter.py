@@ -104,34 +104,30 @@ class StopFilter:
         speed_mps = self.limits.speed_mps if senses.raw is None else max(abs(senses.raw.velocity[0]), abs(self.out[0]))
         window_m = self._window_m(min(speed_mps + 0.1, self.limits.speed_mps))
         grown_m = 0.0 if self._has_begun else p.assumed_clear_m
+        space.roll(robot)
+        self._take_scan(senses)
+        self._take_echoes(senses, now_s)
         space.stand(robot, grown_m, now_s, now_s - p.obstacle_memory_s, window_m)
         self._has_begun = True
-        has_news = self._take_scan(senses)
-        has_news = self._take_echoes(senses, now_s) or has_news
-        if has_news:
-            space.stand(robot, 0.0, now_s, now_s - p.obstacle_memory_s, window_m)
 
-    def _take_scan(self, senses: FilterSenses) -> bool:
-        if senses.scan is None or senses.scan is self._scan or self._watch is None or self._laser is None or self.space is None:
-            return False
-        if self._scan is None or senses.scan.stamp_s != self._scan.stamp_s:
-            if self._watch.look(senses.scan, senses.laser) and senses.laser is not None:
-                self.space.add_scan(senses.scan, senses.laser, self._laser.z_m, senses.tilt_rad)
-        self._scan = senses.scan
-        return True
+    def _take_scan(self, senses: FilterSenses) -> None:
+        scan, last, self._scan = senses.scan, self._scan, senses.scan
+        if scan is None or self._watch is None or self._laser is None or self.space is None or (last is not None and scan.stamp_s == last.stamp_s):
+            return
+        if self._watch.look(scan, senses.laser) and senses.laser is not None:
+            self.space.add_scan(scan, senses.laser, self._laser.z_m, senses.tilt_rad)
 
-    def _take_echoes(self, senses: FilterSenses, now_s: float) -> bool:
+    def _take_echoes(self, senses: FilterSenses, now_s: float) -> None:
         sonar, ring = senses.sonar, self._ring
         if sonar is None or sonar is self._heard or ring is None or self._sonar is None or self.space is None or senses.sonar_at is None:
-            return False
+            return
         self._heard = sonar
         ranges_m = np.array(sonar.ranges_m)
         if ranges_m.shape != (ring.count,) or not np.isfinite(ranges_m).all() or now_s - sonar.stamp_s > self.parameters.sonar_stale_s:
             self._heard = None
             self.space.drop_echoes()
-            return False
+            return
         self.space.add_echoes(ring.axes, self._leaves_m, ranges_m, self._sonar, senses.sonar_at, sonar.stamp_s)
-        return True
 
     def _window_m(self, speed_mps: float) -> float:
         """How far from the robot's centre things matter at a speed."""
@@ -242,7 +238,7 @@ class StopFilter:
         space = self.space
         assert space is not None
         return first_trouble(
-            space.points, space.count, self._outline.planes, self._rim, space.seen, space.hits, *space.corner_m, *robot, figures, *twist,
+            space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures, *twist,
             now_s - self.parameters.free_memory_s,
         )  # fmt: skip
 

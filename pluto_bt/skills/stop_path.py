@@ -6,7 +6,7 @@ import math
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array
-from pluto_bt.skills.seen_kernels import NEVER, STAMP, cell_of, outside_m
+from pluto_bt.skills.seen_kernels import NEVER, cell_of, outside_m
 
 CLEAR, MEETS, UNSEEN = 0, 1, 2
 STEP_M = 0.03  # the rim is looked at each time the outline may have moved so far
@@ -20,7 +20,7 @@ SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M
 
 @kernel
 def first_trouble(
-    points: Array, count: int, planes: Array, rim: Array, seen: Array, hits: Array, corner_x_m: float, corner_y_m: float,
+    points: Array, count: int, planes: Array, rim: Array, seen: Array, stamps: Array, corner_x_m: float, corner_y_m: float,
     x_m: float, y_m: float, theta_rad: float, figures: Array, speed_mps: float, turn_rate_radps: float, known_since_s: float,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Drive the command, brake, and look on the way.
@@ -47,7 +47,7 @@ def first_trouble(
         if to_rim_m <= 0.0:
             to_rim_m = STEP_M
             creep_mps = figures[CREEP_MPS]
-            which = rim_in_the_dark(rim, seen, hits, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s)
+            which = rim_in_the_dark(rim, seen, stamps, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s)
             if which >= 0:
                 return UNSEEN, which, t_s
         dt_s = min(0.05, max(0.005, 0.5 * STEP_M / max(abs(v) + abs(w) * figures[REACH_M], 1e-3)))
@@ -92,7 +92,7 @@ def nearest(points: Array, count: int, planes: Array, x: float, y: float, turned
 
 @inline_kernel
 def rim_in_the_dark(
-    rim: Array, seen: Array, hits: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float,
+    rim: Array, seen: Array, stamps: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float,
     x: float, y: float, turned: float, v: float, w: float, creep_mps: float, known_since_s: float,
 ) -> int:  # fmt: skip
     """Which point of the rim moves outwards, faster than creeping, where nothing was ever seen; -1 = none."""
@@ -104,20 +104,20 @@ def rim_in_the_dark(
         if (v - w * py) * rim[i, 2] + w * px * rim[i, 3] <= creep_mps:
             continue
         column, row = cell_of(at_x + c * px - s * py, corner_x_m), cell_of(at_y + s * px + c * py, corner_y_m)
-        if not is_known(seen, hits, row, column, known_since_s):
+        if not is_known(seen, stamps, row, column, known_since_s):
             return i
     return -1
 
 
 @inline_kernel
-def is_known(seen: Array, hits: Array, row: int, column: int, known_since_s: float) -> bool:
+def is_known(seen: Array, stamps: Array, row: int, column: int, known_since_s: float) -> bool:
     """Whether a cell or one beside it was seen free, or holds a point (which is looked at as such): beams leave gaps of a cell."""
     known = False
     if 1 <= row < seen.shape[0] - 1 and 1 <= column < seen.shape[1] - 1:
         known = (
             seen[row, column] >= known_since_s
-            or hits[0, row, column, STAMP] > NEVER
-            or hits[1, row, column, STAMP] > NEVER
+            or stamps[0, row, column] > NEVER
+            or stamps[1, row, column] > NEVER
             or seen[row - 1, column] >= known_since_s
             or seen[row + 1, column] >= known_since_s
             or seen[row, column - 1] >= known_since_s

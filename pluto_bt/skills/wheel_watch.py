@@ -12,6 +12,36 @@ LEAST_M, LEAST_RAD = 0.012, 0.02  # less expected way or turn says nothing
 LEAST_SHARE = 0.15  # of the expected way: less counts as standing still
 
 
+class Channel:
+    """One number of the odometry, distance or heading: its expected and its counted change since it last was seen to follow."""
+
+    def __init__(self, least: float) -> None:
+        self._least = least
+        self.begin(0.0, 0.0)
+
+    def begin(self, counted: float, now_s: float) -> None:
+        """Compare from now on."""
+        self._since_s, self._from = now_s, counted
+        self.expected = self.changed = 0.0
+
+    def stands_s(self, rate: float, told: float, dt_s: float, counted: float, now_s: float) -> float:
+        """For how long it has stood still though it was expected to change; 0 if it follows.
+
+        Args:
+            rate: what a motor model says it does now. told: what the base was told. On the way from one sign to the other nothing is known.
+        """
+        self.expected += rate * dt_s
+        self.changed = counted - self._from
+        if told == 0.0 or told * rate < 0.0:
+            self.begin(counted, now_s)
+        elif abs(self.expected) > self._least:
+            if abs(self.changed) >= LEAST_SHARE * abs(self.expected):
+                self.begin(counted, now_s)
+            else:
+                return now_s - self._since_s
+        return 0.0
+
+
 class WheelWatch:
     """Compares what the commands in force should have done with what the encoders say."""
 
@@ -19,8 +49,7 @@ class WheelWatch:
         self._limits, self._still_s, self._retry_s = limits, still_s, retry_s
         self._model: Twist = STILL
         self._last_s: float | None = None
-        self._anchor: tuple[float, float, float] | None = None  # since when, and where the encoders stood
-        self._way_m = self._turn_rad = 0.0
+        self._way, self._turn = Channel(LEAST_M), Channel(LEAST_RAD)
         self._held_until_s = -1.0
         self._text = ""
 
@@ -30,31 +59,16 @@ class WheelWatch:
         self._last_s = now_s
         self._model = ramp(self._model, in_force, self._limits, dt_s)
         if now_s < self._held_until_s:
-            self._anchor = None
+            self._way.begin(raw.position[0], now_s)
+            self._turn.begin(raw.position[1], now_s)
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
-        if self._anchor is None or in_force == STILL:
-            self._begin(raw, now_s)
-            return ALL_WELL
-        self._way_m += self._model[0] * dt_s
-        self._turn_rad += self._model[1] * dt_s
-        return self._compare(raw, now_s, self._anchor)
-
-    def _compare(self, raw: ActuatorState, now_s: float, anchor: tuple[float, float, float]) -> Verdict:
-        since_s, distance_m, heading_rad = anchor
-        way_m, turn_rad = abs(raw.position[0] - distance_m), abs(raw.position[1] - heading_rad)
-        drives, turns = abs(self._way_m) > LEAST_M, abs(self._turn_rad) > LEAST_RAD
-        stands = (drives and way_m < LEAST_SHARE * abs(self._way_m)) or (turns and turn_rad < LEAST_SHARE * abs(self._turn_rad))
-        if not stands:
-            if drives or turns:
-                self._begin(raw, now_s)
-            return ALL_WELL
-        if now_s - since_s < self._still_s:
+        way_s = self._way.stands_s(self._model[0], in_force[0], dt_s, raw.position[0], now_s)
+        turn_s = self._turn.stands_s(self._model[1], in_force[1], dt_s, raw.position[1], now_s)
+        if max(way_s, turn_s) < self._still_s:
             return ALL_WELL
         self._held_until_s = now_s + self._retry_s
-        told = f"the wheels were told to run {abs(self._way_m):.2f} m and {abs(self._turn_rad):.2f} rad"
-        self._text = f"{told}; the encoders say {way_m:.2f} m and {turn_rad:.2f} rad"
+        self._text = (
+            f"the wheels were told to run {self._way.expected:.2f} m and {self._turn.expected:.2f} rad; "
+            f"the encoders say {self._way.changed:.2f} m and {self._turn.changed:.2f} rad"
+        )
         return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
-
-    def _begin(self, raw: ActuatorState, now_s: float) -> None:
-        self._anchor = (now_s, raw.position[0], raw.position[1])
-        self._way_m = self._turn_rad = 0.0
