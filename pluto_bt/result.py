@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from typing import Any
 
 import msgspec
@@ -39,12 +40,12 @@ class RunResult(msgspec.Struct, kw_only=True):
     @property
     def exit_code(self) -> int:
         """The exit code of `pluto run`."""
-        if self.reason == INTERRUPTED:
+        if self.result == "STOPPED" and self.reason == INTERRUPTED:  # a leaf of a user's may fail with any word
             return 130
-        if self.reason in SUPERVISION:
+        if self.result == "STOPPED" and self.reason in SUPERVISION:
             return 3
         return EXIT_CODES[self.result]
 
     def as_json(self) -> str:
-        """One line of JSON; blackboard values that JSON does not know stand as text."""
-        return msgspec.json.encode(self, enc_hook=str).decode()
+        """One line of JSON; queues stand as lists, other blackboard values that JSON does not know as text."""
+        return msgspec.json.encode(self, enc_hook=lambda value: list(value) if isinstance(value, deque) else str(value)).decode()

@@ -95,8 +95,10 @@ class BatteryAbove(Condition):
 
 
 class PoseQualityAbove(Condition):
-    """The pose is known well enough. Quality is 1 / (1 + s), s being the largest standard deviation of the position in metres:
-    1 = exact, 0.5 = one metre."""
+    """The pose is known well enough: 1 / (1 + s) is above `quality`, s being the position's standard deviation in metres.
+
+    Of all directions the worst counts; 1 = exact, 0.5 = one metre.
+    """
 
     INPUT_PORTS = {"quality": Port(float, False, "the limit", 0.5, ge=0.0, le=1.0)}
     OUTPUT_PORTS = NO_PORTS

@@ -13,6 +13,7 @@ from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, MarkerState, SpeedState
 from pluto_bt.skills.car_goto import STEP_S
 from pluto_bt.skills.car_steering import turn_rate
+from pluto_bt.skills.limits import clamp
 
 GYRO_WAIT_S: Final = 90.0  # the bias takes 1000 samples, 20 s at 50 Hz, and starts again when the car is moved
 MARKER_WAIT_S: Final = 5.0
@@ -88,7 +89,7 @@ class SteppedLeaf(MotionLeaf):
     def turn_in_place(self, robot: Robot, rate_radps: float) -> None:
         """Turn without driving, counter-clockwise positive."""
         limit = math.radians(robot.platform.limits.max_turn_rate_dps)
-        self.post(robot, CommandType.VELOCITY, velocity=(0.0, max(-limit, min(limit, rate_radps))))
+        self.post(robot, CommandType.VELOCITY, velocity=(0.0, clamp(rate_radps, limit)))
 
 
 def speed_of(robot: Robot) -> float:

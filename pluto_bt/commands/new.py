@@ -15,12 +15,13 @@ MISSION = """\
     <Sequence name="there and back">
       <GoTo name="out" goal="{{place}}" timeout_s="60"/>
       <Say text="I am there"/>
-      <GoTo name="home" goal="0;0" timeout_s="60"/>
+      <GoTo name="back" goal="{{home}}" timeout_s="60"/>
     </Sequence>
   </BehaviorTree>
   <TreeNodesModel>
     <SubTree ID="{name}">
-      <input_port name="place" default="2;0">where to go, x;y in metres</input_port>
+      <input_port name="place" default="5;3.5">where to go, x;y in metres of the map</input_port>
+      <input_port name="home" default="2;3.5">where to come back to</input_port>
     </SubTree>
   </TreeNodesModel>
 </root>

@@ -12,16 +12,21 @@ from typing import TextIO
 
 from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.gateway.commands import COMMANDS, DONE, FAILED, USAGE, UsageError
+from pluto_bt.gateway.listen import Address
 from pluto_bt.source import did_you_mean
 
 INTERRUPTED = 130
-DEFAULT_ADDRESS = "127.0.0.1:7500"
+DEFAULT_ADDRESS = str(Address())
 _ADDRESS = re.compile(r"(\[[0-9A-Fa-f:]+\]|[A-Za-z0-9.-]*):([0-9]{1,5})")
 
 
 def main(words: Sequence[str], out: TextIO | None = None, errors: TextIO | None = None) -> int:
     """Run the shell with the words behind `pluto shell`; the exit code: 0 done, 1 failed, 2 not understood, 130 Ctrl-C after a stop."""
     out, errors = out or sys.stdout, errors or sys.stderr
+    if words and words[0] in ("-h", "--help"):
+        print(f"usage: pluto shell [HOST:PORT] [COMMAND ...]\n\n{help_text()}\n\nWithout a command it asks for commands. HOST:PORT is "
+              f"{DEFAULT_ADDRESS} if it is not given.", file=out)  # fmt: skip
+        return DONE
     rest = list(words)
     address = rest.pop(0) if rest and _ADDRESS.fullmatch(rest[0]) else DEFAULT_ADDRESS
     shell = Shell(address, out, errors)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState
 from pluto_bt.modules.context import Context
@@ -25,6 +27,7 @@ class Drive:
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._sonar = newest(context, "ATRV2/Sonar")
         self._bumper = newest(context, "ATRV2/Bumper")
+        self._filter_status = newest(context, "filter/status")
 
     def start(self, now_s: float) -> None:
         """Begin at rest, without a command."""
@@ -50,7 +53,7 @@ class Drive:
             self._skill.accept(letter.command, now_s, amends)
         twist = self._skill.step(now_s, DriveSenses(self._raw(), self._sonar(), self._bumper()))
         self._base.post("drive", ActuatorState(now_s, 0, (0.0, 0.0), twist))
-        self._link.tell(now_s, self._skill.status(now_s), None if letter is None else letter.command)
+        self._link.tell(now_s, self._status(now_s), None if letter is None else letter.command)
 
     def stop(self) -> None:
         """The thread stops: zero velocity, and -10 for who asks."""
@@ -58,6 +61,14 @@ class Drive:
         self._link.is_running = False
         self._base.stop("drive", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
         self._link.tell(now_s, self._rest(now_s))
+
+    def _status(self, now_s: float) -> FVectorState:
+        """The drive's own status; where the stop filter lets less through than the drive gives, its verdict and the velocities it lets through."""
+        own, verdict = self._skill.status(now_s), self._filter_status()
+        if own.reason or verdict is None or not verdict.reason or verdict.reason == reasons.STOPPED:
+            return own
+        code = (own.element[0] or verdict.element[0],)
+        return msgspec.structs.replace(own, data=verdict.data, element=code, reason=verdict.reason, text=verdict.text)
 
     def _release(self, now_s: float, command: ActuatorState) -> None:
         self._base.stop("drive", now_s)

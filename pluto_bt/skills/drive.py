@@ -29,10 +29,10 @@ FLAGS = (0, 1, 10, 11)
 class DriveParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Table [drive] of a platform file. A limit of 0 is the platform's own."""
 
-    max_speed_mps: NotNegative = 0.0
-    max_turn_rate_dps: NotNegative = 0.0
-    acceleration_mps2: NotNegative = 0.0
-    deceleration_mps2: NotNegative = 0.0
+    max_speed_mps: Annotated[NotNegative, Meta(description="speed limit")] = 0.0
+    max_turn_rate_dps: Annotated[NotNegative, Meta(description="limit of the turn rate")] = 0.0
+    acceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets faster")] = 0.0
+    deceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets slower")] = 0.0
     timeout_s: Annotated[Positive, Meta(description="without a new command for so long the robot makes a controlled stop")] = 4.0
     odometry_stale_s: Annotated[Positive, Meta(description="older odometry means zero velocity")] = 0.3
     sonar_stale_s: Annotated[Positive, Meta(description="older echoes mean zero velocity while sonar protection is asked for")] = 0.5

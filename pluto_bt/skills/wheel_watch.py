@@ -13,7 +13,10 @@ LEAST_SHARE = 0.15  # of the expected way: less counts as standing still
 
 
 class Channel:
-    """One number of the odometry, distance or heading: its expected and its counted change since it last was seen to follow."""
+    """One number of the odometry, distance or heading: its expected and its counted change since it last was seen to follow.
+
+    Counted is every way, forwards or back: on the way from one direction to the other the wheels are later than the model.
+    """
 
     def __init__(self, least: float) -> None:
         self._least = least
@@ -21,7 +24,7 @@ class Channel:
 
     def begin(self, counted: float, now_s: float) -> None:
         """Compare from now on."""
-        self._since_s, self._from = now_s, counted
+        self._since_s, self._last = now_s, counted
         self.expected = self.changed = 0.0
 
     def stands_s(self, rate: float, told: float, dt_s: float, counted: float, now_s: float) -> float:
@@ -31,11 +34,11 @@ class Channel:
             rate: what a motor model says it does now. told: what the base was told. On the way from one sign to the other nothing is known.
         """
         self.expected += rate * dt_s
-        self.changed = counted - self._from
+        self.changed, self._last = self.changed + abs(counted - self._last), counted
         if told == 0.0 or told * rate < 0.0:
             self.begin(counted, now_s)
         elif abs(self.expected) > self._least:
-            if abs(self.changed) >= LEAST_SHARE * abs(self.expected):
+            if self.changed >= LEAST_SHARE * abs(self.expected):
                 self.begin(counted, now_s)
             else:
                 return now_s - self._since_s

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, NoReturn
+from typing import ClassVar, Literal, NoReturn
 
 Severity = Literal["error", "warning"]
 
@@ -53,7 +53,7 @@ class Fault:
 
     def as_text(self) -> str:
         """The report a person reads: head line, caret line, then what was expected, found and how to mend it."""
-        where = self.file or "<text>"
+        where = _quotable(self.file) or "<text>"
         if self.line:
             where += f":{self.line}:{self.column}" if self.column else f":{self.line}"
         lines = [f"{where}: {self.severity}: {self.message}"]
@@ -66,7 +66,8 @@ class Fault:
     def as_json(self) -> dict[str, str | int]:
         """The fields of `check --format json` (DESIGN.md, section 4)."""
         names = ("file", "line", "column", "severity", "code", "message", "expected", "found", "mend")
-        return {name: getattr(self, name) for name in names}
+        fields = {name: getattr(self, name) for name in names}
+        return fields | {"file": self.file.encode("utf-8", "backslashreplace").decode()}  # file names need be no Unicode text
 
 
 class InputError(PlutoError):
@@ -80,10 +81,11 @@ class InputError(PlutoError):
 class Faults:
     """Collects the faults of one reading; the reader goes on after each, so that all are told at once."""
 
-    LIMIT = 1000  # a broken generator must not fill the memory with reports
+    LIMITS: ClassVar[dict[Severity, int]] = {"error": 1000, "warning": 200}  # a broken generator must not fill the memory with reports
 
     def __init__(self) -> None:
         self._faults: list[Fault] = []
+        self._counts: dict[Severity, int] = {"error": 0, "warning": 0}
 
     def error(self, place: Place, code: str, message: str, *, expected: str = "", found: str = "", mend: str = "") -> None:
         """Note an error; `code` is a short documented word such as `unknown-port`."""
@@ -94,13 +96,26 @@ class Faults:
         self._add(place, "warning", code, message, expected, found, mend)
 
     def _add(self, place: Place, severity: Severity, code: str, message: str, expected: str, found: str, mend: str) -> None:
-        if len(self._faults) < self.LIMIT:
-            message, expected, found, mend = _short(message), _short(expected), _short(found), _short(mend)
-            self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
+        limit = self.LIMITS[severity]
+        if self._counts[severity] >= limit:
+            return
+        self._counts[severity] += 1
+        if self._counts[severity] == limit:
+            place, code, message = Place(place.file), "too-many-faults", f"there are more {severity}s than can be told"
+            expected, found, mend = f"at most {limit}", "more", "mend the first ones"
+        message, expected, found, mend = map(_quotable, (message, expected, found, mend))
+        self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
 
     def extend(self, faults: Iterable[Fault]) -> None:
         """Take over faults found by another reader."""
-        self._faults.extend(faults)
+        for fault in faults:
+            self._faults.append(fault)
+            self._counts[fault.severity] += 1
+
+    @property
+    def is_full(self) -> bool:
+        """True if no further error is taken: reading on makes no sense. (Warnings never hide an error.)"""
+        return self._counts["error"] >= self.LIMITS["error"]
 
     def __bool__(self) -> bool:
         return bool(self._faults)
@@ -111,7 +126,7 @@ class Faults:
     @property
     def has_errors(self) -> bool:
         """True if at least one is more than a warning."""
-        return any(fault.severity == "error" for fault in self._faults)
+        return self._counts["error"] > 0
 
     def in_order(self) -> tuple[Fault, ...]:
         """All faults, by file (in the order first seen), line and column."""
@@ -140,9 +155,10 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f'did you mean "{by_lower[near[0]]}"?' if near else ""
 
 
-def _short(text: str, most: int = 600) -> str:
-    """A report quotes the input, which may hold a word of megabytes."""
-    return text if len(text) <= most else text[: most - 1] + "…"
+def _quotable(text: str, most: int = 600) -> str:
+    """A report quotes the input, which may hold a word of megabytes, or characters that play tricks on a terminal or are no Unicode text."""
+    text = text if len(text) <= most else text[: most - 1] + "…"
+    return text if text.isprintable() else "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def _window(line: str, column: int, width: int = 150) -> tuple[str, int]:

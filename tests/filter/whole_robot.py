@@ -21,7 +21,8 @@ class WholeRobot:
 
     def __init__(self, world: World, platform: str, start: tuple[float, float, float], seed: int = 0, level: str = "drive", settings: Any = ()) -> None:
         self.system = System(Options(world=world, robot=load_robot_file(platform, settings), start=start, seed=seed), VirtualClock())
-        self.system._start()
+        self.system.start_parts()
+        self.system.scheduler.start()
         for link in CHAIN[: CHAIN.index(level)]:
             self.system.order_module(link, False)
         self.level = level

@@ -10,6 +10,7 @@ from pluto_bt.source import Faults, Place, did_you_mean
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, name_problem
 
+MAX_INCLUDES = 50  # levels
 ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include")
 
 
@@ -72,7 +73,7 @@ class MissionFiles:
         """Read a mission file."""
         self.root = read_xml_file(path, shown, self.faults)
         if self.root is not None:
-            self._open.append(str(path.resolve()))
+            self._open.append(os.path.realpath(path))
             self._take_document(self.root, shown, path.parent)
             self._open.pop()
 
@@ -150,12 +151,16 @@ class MissionFiles:
         self._read_include(folder / path, os.path.join(os.path.dirname(shown), attribute.value), attribute)
 
     def _read_include(self, path: Path, shown: str, attribute: XmlAttribute) -> None:
-        real = str(path.resolve())
+        real = os.path.realpath(path)
         if real in self._open:
             chain = " → ".join(Path(file).name for file in [*self._open[self._open.index(real) :], real])
             self.faults.error(attribute.value_place, "include-cycle", "the file includes itself", expected="no circle", found=chain)
             return
-        if not path.is_file():
+        if len(self._open) >= MAX_INCLUDES:
+            what = "files include one another too deeply"
+            self.faults.error(attribute.value_place, "too-deep", what, expected=f"at most {MAX_INCLUDES} levels", found="more")
+            return
+        if not os.path.isfile(path):
             mend, what = did_you_mean(path.name, _neighbours(path)), f"there is no file {attribute.value!r}"
             self.faults.error(attribute.value_place, "no-file", what, expected="a mission file", found=shown, mend=mend)
             return
@@ -200,7 +205,7 @@ class MissionFiles:
 def _neighbours(path: Path) -> list[str]:
     try:
         return sorted(entry.name for entry in path.parent.iterdir() if entry.suffix == ".xml")
-    except OSError:
+    except (OSError, ValueError):
         return []
 
 

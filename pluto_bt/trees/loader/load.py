@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
-from pluto_bt.trees.engine.context import Context, MissionClock
+from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
@@ -101,7 +102,7 @@ def check_mission(
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
-    """The expanded main tree, without making nodes: what `pluto tree` draws. Raises MissionError."""
+    """The expanded main tree, without making nodes, for drawing. Raises MissionError."""
     reading = _read(text_or_path, nodes, None, tree=tree, ports=None, topics=None, file=file, plugins=())
     if reading.report.stops_loading or reading.plan is None:
         raise MissionError(reading.report.faults.in_order())
