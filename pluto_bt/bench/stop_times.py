@@ -89,11 +89,12 @@ class Circling:
         sample = self.system.board.newest("ATRV2/Drive/Command")
         return sample.value.velocity if sample is not None and isinstance(sample.value, ActuatorState) else (0.0, 0.0)
 
-    def run_to(self, at_s: float, until: Callable[[], bool] = lambda: False) -> None:
+    def run_to(self, at_s: float, until: Callable[[], bool] | None = None) -> None:
         """Let time pass, to the nanosecond, or until something holds (looked at every 10 ms)."""
         assert isinstance(self.system.scheduler, Lockstep)
-        while self.now_s < at_s - 1e-9 and not until():
-            self.system.scheduler.run_until(min(round(at_s * NS), self.system.clock.now_ns() + round(STEP_S * NS)))
+        step_ns = round(at_s * NS) if until is None else round(STEP_S * NS)
+        while self.now_s < at_s - 1e-9 and not (until is not None and until()):
+            self.system.scheduler.run_until(min(round(at_s * NS), self.system.clock.now_ns() + step_ns))
 
     def circle_to(self, at_s: float) -> None:
         """Drive on, with a new command every now and then."""

@@ -19,7 +19,7 @@ from pluto_bt.skills.stop_filter import FilterSenses, StopFilter
 from pluto_bt.skills.verdict import Verdict
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
-IDLE_S = 0.08  # a turn of its own comes only when no command came for so long
+IDLE_S = 0.06  # a turn of its own comes only when no command came for so long
 
 
 class Filter:
@@ -56,7 +56,7 @@ class Filter:
     def step(self, now_s: float) -> None:
         """Take the command, look, let through what may pass."""
         letter = self._inbox.take()
-        if letter is None and self._latch.held is None and now_s - self._stepped_s < IDLE_S:
+        if letter is None and self._latch.held is None and now_s - self._commanded_s < IDLE_S:
             return
         if letter is not None:
             self._wanted, self._commanded_s = STILL if letter.is_stop else letter.command.velocity, now_s

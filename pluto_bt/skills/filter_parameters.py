@@ -14,7 +14,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     """How the stop filter sees, how near it lets the robot come, and how old its readings may be."""
 
     enabled: Annotated[bool, Meta(description="false lets every finite command through; latch and age of commands still hold")] = True
-    margin_m: Annotated[NotNegative, Meta(description="distance kept from what is seen, at a standstill")] = 0.02
+    margin_m: Annotated[NotNegative, Meta(description="distance kept from what is seen, beyond the bumpers' depth and 1 cm, at a standstill")] = 0.01
     margin_s: Annotated[NotNegative, Meta(description="and so many metres more for each m/s of the outline, up to 0.1 m")] = 0.1
     creep_mps: Annotated[NotNegative, Meta(description="how fast the outline may move into what was never seen")] = 0.045
     assumed_clear_m: Annotated[NotNegative, Meta(description="who starts the robot has left it so much room on all sides")] = 0.3

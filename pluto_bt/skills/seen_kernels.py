@@ -151,11 +151,13 @@ def stand(
     seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float, planes: Array,
     reach_m: float, grown_m: float, stamp_s: float, hits_since_s: float, window_m: float, out: Array,
 ) -> int:  # fmt: skip
-    """Where the robot stands (and `grown_m` around) is free; gather the points around it.
+    """Where the robot stands (and `grown_m` around) is free; gather the points around it. The outermost cell is left out: cells beside a free one
+    count as known, and the robot must not know what it is about to move into.
 
     Args:
         out: (n, 4) is filled: x m, y m in the robot frame, LEVEL or LOW, room for a margin.
-    Returns: how many points lie within `window_m`. Those older than `hits_since_s`, and those inside the robot, are forgotten.
+    Returns: how many points lie within `window_m`. Those older than `hits_since_s`, those inside the robot, and echoes where the laser sees
+        something too, are forgotten.
     """
     count = 0
     c, s = math.cos(theta_rad), math.sin(theta_rad)
@@ -163,19 +165,30 @@ def stand(
     for row in range(max(0, cell_of(y_m - window_m, corner_y_m)), min(seen.shape[0], cell_of(y_m + window_m, corner_y_m) + 1)):
         for column in range(max(0, cell_of(x_m - window_m, corner_x_m)), min(seen.shape[1], cell_of(x_m + window_m, corner_x_m) + 1)):
             dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
-            if dx * dx + dy * dy < near_m * near_m and outside_m(planes, c * dx + s * dy, c * dy - s * dx) < grown_m:
+            if dx * dx + dy * dy < near_m * near_m and outside_m(planes, c * dx + s * dy, c * dy - s * dx) < grown_m - CELL_M:
                 seen[row, column] = stamp_s
             for layer in range(2):
                 if stamps[layer, row, column] == NEVER:
                     continue
                 dx, dy = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
                 px, py = c * dx + s * dy, c * dy - s * dx
-                if stamps[layer, row, column] < hits_since_s or outside_m(planes, px, py) < INSIDE_M:
+                is_old = stamps[layer, row, column] < hits_since_s or (layer == LOW and is_level_near(stamps, row, column))
+                if is_old or outside_m(planes, px, py) < INSIDE_M:
                     stamps[layer, row, column] = NEVER
                 elif count < out.shape[0]:
                     out[count, 0], out[count, 1], out[count, 2] = px, py, layer
                     count += 1
     return count
+
+
+@inline_kernel
+def is_level_near(stamps: Array, row: int, column: int) -> bool:
+    """Whether the laser sees something in this cell or one beside it: then it knows better where."""
+    found = False
+    for i in range(max(0, row - 1), min(stamps.shape[1], row + 2)):
+        for j in range(max(0, column - 1), min(stamps.shape[2], column + 2)):
+            found = found or stamps[LEVEL, i, j] > NEVER
+    return found
 
 
 @inline_kernel

@@ -19,6 +19,7 @@ MOST_POINTS = 4000
 LONE_STEP_M = 0.3  # one beam so much shorter than both neighbours needs the scan before to be believed
 LEVEL_RAD = math.radians(1.5)  # a scan tilted by less counts as level
 GROUND_M = 0.05  # what a tilted beam meets lower than this is the ground
+BEHIND_M = 0.5  # echoes are used so much less far than beams, so that the laser has seen what they come from
 ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes get lost
 
 
@@ -89,7 +90,7 @@ class SeenSpace:
         c, s = math.cos(robot[2]), math.sin(robot[2])
         x, y = robot[0] + c * axes[:, 0] - s * axes[:, 1], robot[1] + s * axes[:, 0] + c * axes[:, 1]
         cones = np.column_stack((x, y, axes[:, 2] + robot[2], np.maximum(echoes, leaves_m), clear_m, leaves_m))
-        most_m = min(self._hear_m, self._reach_m, sonar.max_range_m - 0.01)
+        most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
         hear_cones(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
 
     def drop_echoes(self) -> None:

@@ -21,7 +21,7 @@ from pluto_bt.skills.map_area import MapArea
 from pluto_bt.skills.outline import Array, Outline, Planar, outline_of
 from pluto_bt.skills.scan_watch import ScanWatch
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
-from pluto_bt.skills.seen_space import SeenSpace
+from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing, sonar_code, where_word
 from pluto_bt.skills.stop_path import first_trouble
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
@@ -30,6 +30,7 @@ from pluto_bt.skills.wheel_watch import WheelWatch
 BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve for slopes and worn brakes
 HALVINGS = 5  # the share of a command that may pass is found to 3 %
 SLOWEST: Twist = (0.01, 0.015)  # less than both is not worth the motors' while
+TOUCH_M = 0.01  # so near is as good as touching
 OUTSIDE_M = 0.05  # a position may be wrong by so much before it counts as outside the mapped area
 
 
@@ -68,8 +69,9 @@ class StopFilter:
         self._ring = SonarRing(devices.sonar, self._outline) if devices.sonar else None
         axes = self._ring.axes.tolist() if self._ring else []
         self._leaves_m = np.array([self._outline.way_out_m(x, y, math.cos(theta), math.sin(theta)) for x, y, theta in axes])
+        self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
         self.has_eyes = self._laser is not None or self._sonar is not None
-        self.space = SeenSpace(self._outline, self._window_m(self.limits.speed_mps) + 2 * CELL_M, p.hear_m) if self.has_eyes else None
+        self.space = SeenSpace(self._outline, self._window_m(self.limits.speed_mps) + BEHIND_M, p.hear_m) if self.has_eyes else None
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self.verdict = Verdict()
         self.out: Twist = STILL
@@ -161,6 +163,7 @@ class StopFilter:
     def _trouble(self, now_s: float, senses: FilterSenses) -> Verdict:
         """What forbids every motion."""
         p, raw = self.parameters, senses.raw
+        wheels = ALL_WELL if self._wheels is None or raw is None else self._wheels.step(raw, self.out, now_s)
         if senses.executive_age_s > p.executive_silent_s:
             return Verdict(LinkStatus.NORMAL, reasons.EXECUTIVE_SILENT, f"the executive has done nothing for {senses.executive_age_s:.2f} s")
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
@@ -168,7 +171,7 @@ class StopFilter:
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_STALE, f"{age}; {p.odometry_stale_s:g} s are allowed")
         if self.has_eyes and (senses.pose is None or now_s - senses.pose[0] > p.odometry_stale_s):
             return Verdict(LinkStatus.NORMAL, reasons.NO_POSE, f"dead reckoning has given no pose for {p.odometry_stale_s:g} s")
-        return ALL_WELL if self._wheels is None else self._wheels.step(raw, self.out, now_s)
+        return wheels
 
     def _bumped(self, twist: Twist, bumper: BumperState | None) -> tuple[Twist, Verdict]:
         """A pressed panel: no motion towards it, and no rotation."""
@@ -231,7 +234,7 @@ class StopFilter:
         now = ramp((raw.velocity[0], raw.velocity[1]), self.out, limits, self._lag_s)
         return np.array([
             now[0], now[1], limits.acceleration_mps2, BRAKING_SHARE * limits.deceleration_mps2, BRAKING_SHARE * limits.turn_acceleration_radps2,
-            self._hold_s, self._outline.reach_m, p.margin_m, p.margin_s, p.creep_mps,
+            self._hold_s, self._outline.reach_m, self._least_m, self._least_m + p.margin_m, p.margin_s, p.creep_mps,
         ])  # fmt: skip
 
     def _look_along(self, twist: Twist, figures: Array, robot: Planar, now_s: float) -> tuple[int, int, float]:

@@ -10,12 +10,11 @@ from pluto_bt.skills.seen_kernels import NEVER, cell_of, outside_m
 
 CLEAR, MEETS, UNSEEN = 0, 1, 2
 STEP_M = 0.03  # the rim is looked at each time the outline may have moved so far
-NEARER_M = 0.004  # a point already within its margin may come nearer by so much in one decision …
-LEAST_M = 0.01  # … but never nearer than this
+NEARER_M = 0.004  # a point already within its margin may come nearer by so much in one decision, but never nearer than LEAST_M
 DEEP_M = -0.1  # points deeper inside the outline are the robot itself
 MOST_MARGIN_M = 0.1
 LONGEST_S = 8.0
-SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(10)
+SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, LEAST_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(11)
 
 
 @kernel
@@ -37,21 +36,21 @@ def first_trouble(
     fastest = max(abs(v), abs(speed_mps)) + max(abs(w), abs(turn_rate_radps)) * figures[REACH_M]
     margin_m = min(figures[MARGIN_M] + figures[MARGIN_S] * fastest, MOST_MARGIN_M)
     for i in range(count):
-        points[i, 3] = margin_of(outside_m(planes, points[i, 0], points[i, 1]), margin_m)
-    x, y, turned, t_s, to_point_m, to_rim_m = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        points[i, 3] = margin_of(outside_m(planes, points[i, 0], points[i, 1]), margin_m, figures[LEAST_M])
+    x, y, turned, t_s, to_point_m, to_rim_m, was_held = 0.0, 0.0, 0.0, 0.0, 0.0, STEP_M, True
     while t_s < LONGEST_S:
         if to_point_m <= 0.0:
             to_point_m, which = nearest(points, count, planes, x, y, turned)
             if to_point_m <= 0.0:
                 return MEETS, which, t_s
-        if to_rim_m <= 0.0:
-            to_rim_m = STEP_M
+        goes_on = t_s < figures[HOLD_S]
+        if to_rim_m <= 0.0 or (was_held and not goes_on):  # when the brakes begin to bite it is fastest
+            to_rim_m, was_held = STEP_M, goes_on
             creep_mps = figures[CREEP_MPS]
             which = rim_in_the_dark(rim, seen, stamps, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s)
             if which >= 0:
                 return UNSEEN, which, t_s
         dt_s = min(0.05, max(0.005, 0.5 * STEP_M / max(abs(v) + abs(w) * figures[REACH_M], 1e-3)))
-        goes_on = t_s < figures[HOLD_S]
         v_next = towards(v, speed_mps if goes_on else 0.0, figures[ACCELERATION] * dt_s, figures[DECELERATION] * dt_s)
         w_next = towards(w, turn_rate_radps if goes_on else 0.0, figures[TURN_ACCELERATION] * dt_s, figures[TURN_ACCELERATION] * dt_s)
         v_mean, w_mean = 0.5 * (v + v_next), 0.5 * (w + w_next)
@@ -66,13 +65,13 @@ def first_trouble(
 
 
 @inline_kernel
-def margin_of(distance_m: float, margin_m: float) -> float:
+def margin_of(distance_m: float, margin_m: float, least_m: float) -> float:
     """The margin of a point that is so far away now: who stands too near already may leave, and slide along."""
     if distance_m < DEEP_M:
         return -1e9
     if distance_m >= margin_m + NEARER_M:
         return margin_m
-    return min(distance_m - 0.001, max(LEAST_M, distance_m - NEARER_M))
+    return min(distance_m - 0.001, max(least_m, distance_m - NEARER_M))
 
 
 @inline_kernel

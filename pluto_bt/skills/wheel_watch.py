@@ -9,6 +9,7 @@ from pluto_bt.skills.limits import STILL, Limits, Twist, ramp
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
 LEAST_M, LEAST_RAD = 0.012, 0.02  # less expected way or turn says nothing
+LONGEST_S = 0.12  # after a longer time without a look nothing is known of what the wheels did meanwhile
 LEAST_SHARE = 0.15  # of the expected way: less counts as standing still
 
 
@@ -58,12 +59,14 @@ class WheelWatch:
 
     def step(self, raw: ActuatorState, in_force: Twist, now_s: float) -> Verdict:
         """`in_force`: the twist that the base was told last."""
-        dt_s = 0.0 if self._last_s is None else min(now_s - self._last_s, 0.2)
-        self._last_s = now_s
+        if self._last_s is None or now_s - self._last_s > LONGEST_S:
+            self._model = raw.velocity
+            self._begin(raw, now_s)
+            self._last_s = now_s
+        dt_s, self._last_s = now_s - self._last_s, now_s
         self._model = ramp(self._model, in_force, self._limits, dt_s)
         if now_s < self._held_until_s:
-            self._way.begin(raw.position[0], now_s)
-            self._turn.begin(raw.position[1], now_s)
+            self._begin(raw, now_s)
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
         way_s = self._way.stands_s(self._model[0], in_force[0], dt_s, raw.position[0], now_s)
         turn_s = self._turn.stands_s(self._model[1], in_force[1], dt_s, raw.position[1], now_s)
@@ -75,3 +78,7 @@ class WheelWatch:
             f"the encoders say {self._way.changed:.2f} m and {self._turn.changed:.2f} rad"
         )
         return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
+
+    def _begin(self, raw: ActuatorState, now_s: float) -> None:
+        self._way.begin(raw.position[0], now_s)
+        self._turn.begin(raw.position[1], now_s)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -19,7 +19,9 @@ CHAIN = ("motion", "avoid", "drive", "filter")
 class WholeRobot:
     """`level`: the link that takes the commands; those above it are stopped."""
 
-    def __init__(self, world: World, platform: str, start: tuple[float, float, float], seed: int = 0, level: str = "drive", settings: Any = ()) -> None:
+    def __init__(
+        self, world: World, platform: str, start: tuple[float, float, float], seed: int = 0, level: str = "drive", settings: Sequence[str] = ()
+    ) -> None:
         self.system = System(Options(world=world, robot=load_robot_file(platform, settings), start=start, seed=seed), VirtualClock())
         self.system.start_parts()
         self.system.scheduler.start()
@@ -37,7 +39,8 @@ class WholeRobot:
         self.system.scheduler.run_until(self.system.clock.now_ns() + round(seconds * NS), lambda: not until())  # type: ignore[union-attr]
 
     def order(self, speed_mps: float, turn_rate_radps: float, flags: int = 0) -> str:
-        return self.system.inboxes[self.level].post("tester", ActuatorState(self.now_s, flags, (0.0, 0.0), (float(speed_mps), float(turn_rate_radps))))
+        command = ActuatorState(self.now_s, flags, (0.0, 0.0), (float(speed_mps), float(turn_rate_radps)))
+        return self.system.inboxes[self.level].post("tester", command)
 
     def drive(self, speed_mps: float, turn_rate_radps: float, seconds: float) -> None:
         """Command and let time pass; at the level of the filter commands must come again and again."""
