@@ -66,6 +66,8 @@ class SteppedLeaf(MotionLeaf):
             gyro = robot.newest("dmu/state")
             if not isinstance(gyro, ImuState) or not gyro.bias_known:
                 return "waiting for the gyro's bias", GYRO_WAIT_S
+            if robot.is_stale("dmu/state"):
+                return "waiting for the gyro", POSE_WAIT_S
         if self.NEEDS_MARKER and devices.marker is not None:
             marker = robot.newest("car/marker")
             if not isinstance(marker, MarkerState) or marker.accepted_count == 0:

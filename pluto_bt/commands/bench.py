@@ -13,7 +13,9 @@ BENCHES = {
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
     "stop-times": "from a cause to zero velocity, 1000 trials each",
     "tick": "a tick of the tree against stock py_trees",
+    "patrols": "patrols over random courses in places nobody tuned to",
     "repeat": "runs with one seed: equal traces",
+    "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",
     "memory": "memory of an hour's simulated run",
 }

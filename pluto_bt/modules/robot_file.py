@@ -88,7 +88,8 @@ def _check_body(robot: RobotFile, place: Place, faults: Faults) -> None:
     elif is_flat(outline):
         faults.error(place, "no-area", "body.outline_m encloses no area")
     if robot.body.kinematics == "ackermann" and robot.body.min_turn_radius_m <= 0:
-        faults.error(place, "missing-parameter", "an ackermann body needs min_turn_radius_m > 0")
+        faults.error(place, "missing-parameter", "an ackermann body needs min_turn_radius_m", expected="metres, > 0", found="0",
+                     mend="add min_turn_radius_m = … to [body]")  # fmt: skip
 
 
 __all__ = ["SHIPPED", "InputError", "RobotFile", "load_robot_file"]

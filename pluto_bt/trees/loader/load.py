@@ -124,9 +124,12 @@ def _read(
     faults = Faults()
     reading = Reading(MissionFiles(faults), node_types(nodes, plugins), Board(topics), Report(faults))
     _read_files(reading, text_or_path, file, models)
-    if reading.files.root is None or faults.has_errors:
+    if reading.files.root is None:
         return reading
+    is_whole = not faults.has_errors  # a tree of a file that could not be read must not be called unknown
     StaticCheck(reading.files, reading.types, reading.report).run()
+    if not is_whole:
+        return reading
     reading.main = _main_tree(reading, tree)
     if reading.main is None:
         return reading

@@ -17,7 +17,7 @@ from pluto_bt.trees.script.terms import Assignment, Chain, Choice, Comparison, E
 from pluto_bt.trees.script.tokens import ScriptSyntaxError, Token, tokens_of
 
 MAX_DEPTH: Final = 50
-MAX_CHARACTERS: Final = 20_000
+MAX_CHARACTERS: Final = 100_000
 ASSIGNMENTS: Final = (":=", "=", "+=", "-=", "*=", "/=")
 COMPARISONS: Final = ("==", "!=", "<", ">", "<=", ">=")
 LEVELS: Final = (("||",), ("&&",), COMPARISONS, ("|", "^"), ("&",), ("+", "-", ".."), ("*", "/"))
