@@ -58,6 +58,8 @@ class Filter:
         letter = self._inbox.take()
         if letter is None and self._latch.held is None and now_s - self._commanded_s < IDLE_S:
             return
+        if letter is not None and not letter.is_stop and now_s == self._stepped_s and letter.command.velocity == self._wanted:
+            return  # the drive says the same thing twice at one moment
         if letter is not None:
             self._wanted, self._commanded_s = STILL if letter.is_stop else letter.command.velocity, now_s
         senses = self._senses()

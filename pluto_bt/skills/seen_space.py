@@ -20,6 +20,8 @@ LONE_STEP_M = 0.3  # one beam so much shorter than both neighbours needs the sca
 LEVEL_RAD = math.radians(1.5)  # a scan tilted by less counts as level
 GROUND_M = 0.05  # what a tilted beam meets lower than this is the ground
 BEHIND_M = 0.5  # echoes are used so much less far than beams, so that the laser has seen what they come from
+APEX_X, APEX_Y, AXIS, ECHO, CLEAR_TO, LEAVES = range(6)  # columns of the cones
+DEAF_M = 0.02
 ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes get lost
 
 
@@ -38,6 +40,7 @@ class SeenSpace:
         self._middle: tuple[int, int] | None = None
         self._last_ranges_m: Array | None = None
         self._rounds: list[Array] = []
+        self._see, self._hear, self._stand = see_beams.compiled(), hear_cones.compiled(), stand.compiled()
 
     @property
     def corner_m(self) -> tuple[float, float]:
@@ -53,7 +56,7 @@ class SeenSpace:
             return
         believed = self._believed(ranges)
         self._last_ranges_m = ranges
-        see_beams(
+        self._see(
             self.seen, self.stamps, self.spots, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed,
             scan.stamp_s, self._reach_m,
         )  # fmt: skip
@@ -83,15 +86,19 @@ class SeenSpace:
         Args:
             axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
         """
-        self._rounds = [*self._rounds[1 - ROUNDS :], ranges_m]
-        clear_m = np.min(self._rounds, axis=0) if len(self._rounds) == ROUNDS else np.zeros(len(ranges_m))
-        clear_m = np.where(clear_m > sonar.min_range_m + 0.02, clear_m, 0.0)  # nearer it is deaf: nothing is proved
-        echoes = np.where(ranges_m > sonar.min_range_m + 0.02, ranges_m, 0.0)
+        heard_m = ranges_m * (ranges_m > sonar.min_range_m + DEAF_M)  # nearer it is deaf: it may be anywhere, and nothing is proved
+        self._rounds = [*self._rounds[1 - ROUNDS :], heard_m]
         c, s = math.cos(robot[2]), math.sin(robot[2])
-        x, y = robot[0] + c * axes[:, 0] - s * axes[:, 1], robot[1] + s * axes[:, 0] + c * axes[:, 1]
-        cones = np.column_stack((x, y, axes[:, 2] + robot[2], np.maximum(echoes, leaves_m), clear_m, leaves_m))
+        cones = np.zeros((len(ranges_m), 6))
+        cones[:, APEX_X] = robot[0] + c * axes[:, 0] - s * axes[:, 1]
+        cones[:, APEX_Y] = robot[1] + s * axes[:, 0] + c * axes[:, 1]
+        cones[:, AXIS] = axes[:, 2] + robot[2]
+        cones[:, ECHO] = np.maximum(heard_m, leaves_m)
+        cones[:, LEAVES] = leaves_m
+        if len(self._rounds) == ROUNDS:
+            cones[:, CLEAR_TO] = np.minimum(np.minimum(*self._rounds[:2]), heard_m)
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
-        hear_cones(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
+        self._hear(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
@@ -100,7 +107,7 @@ class SeenSpace:
     def stand(self, robot: Planar, grown_m: float, now_s: float, obstacles_since_s: float, window_m: float) -> None:
         """The robot stands here: its place is free. Gather the points within `window_m` into `points`."""
         outline = self._outline
-        self.count = stand(
+        self.count = self._stand(
             self.seen, self.stamps, self.spots, *self.corner_m, *robot, outline.planes, outline.reach_m, grown_m, now_s, obstacles_since_s,
             max(window_m, outline.reach_m + grown_m + CELL_M), self.points,
         )  # fmt: skip

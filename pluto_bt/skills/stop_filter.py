@@ -73,6 +73,7 @@ class StopFilter:
         self.has_eyes = self._laser is not None or self._sonar is not None
         self.space = SeenSpace(self._outline, self._window_m(self.limits.speed_mps) + BEHIND_M, p.hear_m) if self.has_eyes else None
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
+        self._first_trouble = first_trouble.compiled()
         self.verdict = Verdict()
         self.out: Twist = STILL
         self._scan: LaserScan | None = None
@@ -240,7 +241,7 @@ class StopFilter:
     def _look_along(self, twist: Twist, figures: Array, robot: Planar, now_s: float) -> tuple[int, int, float]:
         space = self.space
         assert space is not None
-        return first_trouble(
+        return self._first_trouble(
             space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures, *twist,
             now_s - self.parameters.free_memory_s,
         )  # fmt: skip
