@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import Final
 
 from pluto_bt.behaviours.car_goto import CarGoTo
-from pluto_bt.behaviours.conditions import BatteryAbove, BumperPressed, InsideArea, IsAt, IsStuck, PoseQualityAbove
+from pluto_bt.behaviours.conditions import BatteryAbove, BumperPressed, InsideArea, IsAt, IsStuck, IsTilted, PoseQualityAbove
+from pluto_bt.behaviours.escape import ReadAlarms, TryTurn
+from pluto_bt.behaviours.follow import Follow
 from pluto_bt.behaviours.goto import GoTo
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.make_turn import MakeTurn
@@ -15,6 +17,8 @@ from pluto_bt.behaviours.topic_compare import TopicCompare, WaitFor
 from pluto_bt.behaviours.velocity import DriveVelocity, HoldHeading
 from pluto_bt.behaviours.wrist import PointWrist
 
-ACTIONS: Final[tuple[type[Leaf], ...]] = (GoTo, CarGoTo, MakeTurn, DriveVelocity, HoldHeading, Stop, Release, PointWrist, WaitFor, Say)
-CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
+ACTIONS: Final[tuple[type[Leaf], ...]] = (
+    GoTo, CarGoTo, MakeTurn, DriveVelocity, HoldHeading, Stop, Release, Follow, PointWrist, TryTurn, ReadAlarms, WaitFor, Say,
+)  # fmt: skip
+CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS)

@@ -47,6 +47,9 @@ class Robot(Protocol):
     def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
         """Point the laser."""
 
+    def read_alarms(self) -> None:
+        """Take back the alarms of `imu/alarms` that stay until they are read."""
+
     def say(self, text: str) -> None:
         """A line for operators."""
 

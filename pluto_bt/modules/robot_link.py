@@ -12,6 +12,7 @@ from pluto_bt.modules.context import Context
 
 SOURCE = "mission"
 GOALS_KEPT = 200
+AMENDED_WITHIN_S = 1.0  # a goal so soon after the last one is the same order with other figures: a target that is followed
 MOTION_COMMAND, MOTION_STATUS = "motion/command", "motion/status"
 
 
@@ -22,6 +23,7 @@ class RobotLink:
         self._context = context
         self._snapshot = context.board.snapshot(context.clock.now_s())
         self.goals: list[Pair] = []  # where missions sent the robot, for pictures
+        self._goal_s = -AMENDED_WITHIN_S
 
     @property
     def snapshot(self) -> Snapshot:
@@ -45,9 +47,15 @@ class RobotLink:
     def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
         """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
         command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), (force,))
-        if flags % 10 == CommandType.GOTO and flags > 0 and len(self.goals) < GOALS_KEPT and position not in self.goals:
-            self.goals.append(position)
+        if flags % 10 == CommandType.GOTO and flags > 0:
+            self._note_goal(position, command.stamp_s)
         return Ticket(command, self._context.inboxes["motion"].post(SOURCE, command))
+
+    def _note_goal(self, goal: Pair, now_s: float) -> None:
+        is_new = now_s - self._goal_s >= AMENDED_WITHIN_S and goal not in self.goals
+        self._goal_s = now_s
+        if is_new and len(self.goals) < GOALS_KEPT:
+            self.goals.append(goal)
 
     def status(self, ticket: Ticket) -> FVectorState | None:
         """`motion/status` as far as it speaks of this command: motion has accepted it and has written its status since."""
@@ -76,6 +84,10 @@ class RobotLink:
         now_s = self._context.clock.now_s()
         rates, accelerations = (rate_radps, rate_radps), (acceleration_radps2, acceleration_radps2)
         self._context.inboxes["wrist"].post(SOURCE, ActuatorState(now_s, 0, (pan_rad, tilt_rad), rates, accelerations))
+
+    def read_alarms(self) -> None:
+        """Leave a letter for the module `alarms`."""
+        self._context.inboxes["alarms"].post(SOURCE, ActuatorState(self._context.clock.now_s()))
 
     def say(self, text: str) -> None:
         """A line for operators."""
