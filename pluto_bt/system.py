@@ -44,13 +44,9 @@ MODULES: tuple[Module, ...] = (
     Module("marker",    "pluto_bt.modules.marker:Marker",         0.1,    "io",         device="marker", needs=("local",),              budget_ms=1.0),
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
            wakes=("ATRV2/Drive/Raw", "sick/timing")),
-<<<<<<< HEAD
+    Module("alarms",    "pluto_bt.modules.alarms:Alarms",         0.05,   "estimation", needs=("base",),                                budget_ms=1.0),
     Module("filter",    "pluto_bt.modules.filter:Filter",         0.05,   "chain",      critical=True, needs=("base", "local"), wakes=("inbox:filter",), budget_ms=5.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("filter",), wakes=("inbox:drive",), budget_ms=2.0),
-=======
-    Module("alarms",    "pluto_bt.modules.alarms:Alarms",         0.05,   "estimation", needs=("base",),                                budget_ms=1.0),
-    Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
->>>>>>> main
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
@@ -58,12 +54,8 @@ MODULES: tuple[Module, ...] = (
 )
 # fmt: on
 
-<<<<<<< HEAD
 # link -> the link above, which owns its inbox
-INBOXES = {"base": "filter", "filter": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "wrist": ""}
-=======
-INBOXES = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "wrist": "", "alarms": ""}  # link -> the link above, which owns its inbox
->>>>>>> main
+INBOXES = {"base": "filter", "filter": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "wrist": "", "alarms": ""}
 
 
 @dataclass
@@ -142,11 +134,11 @@ class System:
     def _owner_rule(self, link: str, above: str) -> Callable[[str], bool]:
         """Who may post to an inbox: the link above while it runs; else whoever is no link (the mission, the lease holder).
 
-        While the safety latch holds nobody may; but the filter still tells the base to stand still, and the wrist moves nobody.
+        While the safety latch holds nobody may; but the filter still tells the base to stand still, and wrist and alarms move nobody.
         """
 
         def is_owner(source: str) -> bool:
-            if self.latch.held is not None and link not in ("base", "wrist"):
+            if self.latch.held is not None and link not in ("base", "wrist", "alarms"):
                 return False
             return source == above if above and (self.is_running(above) or link == "base") else source not in INBOXES
 

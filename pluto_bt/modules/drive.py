@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-<<<<<<< HEAD
-import msgspec
-=======
 from pathlib import Path
 from typing import cast
->>>>>>> main
+
+import msgspec
 
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState
@@ -34,12 +32,9 @@ class Drive:
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._sonar = newest(context, "ATRV2/Sonar")
         self._bumper = newest(context, "ATRV2/Bumper")
-<<<<<<< HEAD
         self._filter_status = newest(context, "filter/status")
-=======
         self._devices = context.devices
         self._say = context.say
->>>>>>> main
 
     def start(self, now_s: float) -> None:
         """Calibrate the base; begin at rest, without a command."""
@@ -75,7 +70,6 @@ class Drive:
         self._base.stop("drive", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
         self._link.tell(now_s, self._rest(now_s))
 
-<<<<<<< HEAD
     def _status(self, now_s: float) -> FVectorState:
         """The drive's own status; where the stop filter lets less through than the drive gives, its verdict and the velocities it lets through."""
         own, verdict = self._skill.status(now_s), self._filter_status()
@@ -83,7 +77,7 @@ class Drive:
             return own
         code = (own.element[0] or verdict.element[0],)
         return msgspec.structs.replace(own, data=verdict.data, element=code, reason=verdict.reason, text=verdict.text)
-=======
+
     def _calibrate(self) -> None:
         """Write the calibration file to the base. It was good when the run began; if it no longer is, the base keeps what it has."""
         file = self._skill.parameters.calibration_file
@@ -95,7 +89,6 @@ class Drive:
             self._say("error", "bad-calibration", "drive", f"the base keeps its old calibration: {error}")
             return
         cast(CalibratedBase, self._devices["base"]).calibrate(calibration.counts_per_m, calibration.effective_track_m)
->>>>>>> main
 
     def _release(self, now_s: float, command: ActuatorState) -> None:
         self._base.stop("drive", now_s)
