@@ -18,12 +18,13 @@ from pluto_bt.skills import reasons, stop_path
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
-from pluto_bt.skills.outline import Array, Outline, Planar, outline_of
+from pluto_bt.skills.map_hold import held_by_area
+from pluto_bt.skills.outline import Array, Planar, outline_of
 from pluto_bt.skills.scan_watch import ScanWatch
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
 from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing, sonar_code, where_word
-from pluto_bt.skills.stop_path import first_trouble
+from pluto_bt.skills.stop_path import first_trouble, rim_of
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 from pluto_bt.skills.wheel_watch import WheelWatch
 
@@ -31,7 +32,6 @@ BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve
 HALVINGS = 5  # the share of a command that may pass is found to 3 %
 SLOWEST: Twist = (0.01, 0.015)  # less than both is not worth the motors' while
 TOUCH_M = 0.01  # so near is as good as touching
-OUTSIDE_M = 0.05  # a position may be wrong by so much before it counts as outside the mapped area
 
 
 class FilterSenses(NamedTuple):
@@ -132,10 +132,13 @@ class StopFilter:
             return
         self.space.add_echoes(ring.axes, self._leaves_m, ranges_m, self._sonar, senses.sonar_at, sonar.stamp_s)
 
+    def _stop_m(self, speed_mps: float) -> float:
+        """The way from a decision to standstill."""
+        return abs(speed_mps) * self._hold_s + speed_mps * speed_mps / (2.0 * BRAKING_SHARE * self.limits.deceleration_mps2)
+
     def _window_m(self, speed_mps: float) -> float:
         """How far from the robot's centre things matter at a speed."""
-        stop_m = speed_mps * self._hold_s + speed_mps * speed_mps / (2.0 * BRAKING_SHARE * self.limits.deceleration_mps2)
-        return self._outline.reach_m + stop_m + stop_path.MOST_MARGIN_M + 2 * CELL_M
+        return self._outline.reach_m + self._stop_m(speed_mps) + stop_path.MOST_MARGIN_M + 2 * CELL_M
 
     # ---------------------------------------------------------------- deciding
 
@@ -151,7 +154,7 @@ class StopFilter:
             return STILL, ALL_WELL
         held, verdict = self._bumped(wanted, senses.bumper)
         if not self.has_eyes:
-            return self._inside(held, senses.pose_map, verdict)
+            return held_by_area(self._area, held, senses.pose_map, self._stop_m(held[0]), verdict)
         if not self._hears(now_s):
             deaf = Verdict(LinkStatus.SONAR_FRONT, reasons.SONAR_STALE, f"no usable echoes younger than {p.sonar_stale_s:g} s")
             held, verdict = self._slowed(held, p.without_sonar_mps, deaf, verdict)
@@ -194,21 +197,6 @@ class StopFilter:
             return twist, verdict
         share = most_mps / fastest_mps
         return (twist[0] * share, twist[1] * share), why
-
-    def _inside(self, twist: Twist, pose: Planar | None, verdict: Verdict) -> tuple[Twist, Verdict]:
-        """A robot without eyes is held by the mapped area: its centre may not leave it; outside, it may come back."""
-        if pose is None or twist[0] == 0.0:
-            return twist, verdict
-        stop_m = abs(twist[0]) * self._hold_s + twist[0] ** 2 / (2.0 * self.limits.deceleration_mps2)
-        ahead = math.copysign(1.0, twist[0])
-        x, y = pose[0] + ahead * OUTSIDE_M * math.cos(pose[2]), pose[1] + ahead * OUTSIDE_M * math.sin(pose[2])
-        if self._area.has_point(pose[0], pose[1]) or self._area.has_point(x, y):
-            return twist, verdict
-        way_back_m = np.arange(0.1, 3.0 + stop_m, 0.1) * ahead
-        if any(self._area.has_point(*_on_arc(pose, twist, way_m)) for way_m in way_back_m.tolist()):
-            return twist, verdict
-        text = f"({pose[0]:.2f}, {pose[1]:.2f}) m is outside the mapped area, and this motion does not lead back"
-        return STILL, Verdict(LinkStatus.NORMAL, reasons.OUTSIDE_MAP, text)
 
     def _cleared(self, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict) -> tuple[Twist, Verdict]:
         """The largest share of a twist whose stopping path is free."""
@@ -259,21 +247,3 @@ class StopFilter:
         code = LinkStatus.LASER_SLOW_STOP if is_laser else sonar_code(x_m, y_m, self._outline)
         what = f"{'the laser saw' if is_laser else 'the sonar heard'} something {self._outline.distance_m(x_m, y_m):.2f} m from the outline"
         return Verdict(code, reasons.LASER if is_laser else reasons.SONAR, f"{asked}: {what}, {where_word(x_m, y_m)}")
-
-
-def rim_of(outline: Outline, corners_m: tuple[tuple[float, float], ...]) -> Array:
-    """(m, 4) points x, y of the outline with their outward normals, at most 0.7 cells apart, so that none of their steps leaps over a cell."""
-    rows = []
-    for nx, ny, c in outline.planes.tolist():
-        on_edge = [-ny * x + nx * y for x, y in corners_m if abs(nx * x + ny * y - c) < 1e-6]
-        first, last = min(on_edge), max(on_edge)
-        n = max(2, math.ceil((last - first) / (0.7 * CELL_M)) + 1)
-        rows += [(nx * c - ny * along, ny * c + nx * along, nx, ny) for along in np.linspace(first, last, n).tolist()]
-    return np.array(rows)
-
-
-def _on_arc(pose: Planar, twist: Twist, way_m: float) -> tuple[float, float]:
-    """Where the robot is after `way_m` (negative: backwards) on the arc of a twist."""
-    half_rad = 0.5 * twist[1] / twist[0] * way_m
-    chord_m = way_m * (math.sin(half_rad) / half_rad if abs(half_rad) > 1e-9 else 1.0)
-    return pose[0] + chord_m * math.cos(pose[2] + half_rad), pose[1] + chord_m * math.sin(pose[2] + half_rad)

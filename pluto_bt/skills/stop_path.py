@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from pluto_bt.maps.kernel import inline_kernel, kernel
-from pluto_bt.skills.outline import Array
-from pluto_bt.skills.seen_kernels import NEVER, cell_of, outside_m
+from pluto_bt.skills.outline import Array, Outline
+from pluto_bt.skills.seen_kernels import CELL_M, NEVER, cell_of, outside_m
 
 CLEAR, MEETS, UNSEEN = 0, 1, 2
 STEP_M = 0.03  # the rim is looked at each time the outline may have moved so far
@@ -132,3 +134,14 @@ def towards(now: float, wanted: float, faster: float, slower: float) -> float:
         wanted = 0.0
     step = slower if abs(wanted) < abs(now) else faster
     return min(wanted, now + step) if wanted > now else max(wanted, now - step)
+
+
+def rim_of(outline: Outline, corners_m: tuple[tuple[float, float], ...]) -> Array:
+    """(m, 4) points x, y of the outline with their outward normals, at most 0.7 cells apart, so that none of their steps leaps over a cell."""
+    rows = []
+    for nx, ny, c in outline.planes.tolist():
+        on_edge = [-ny * x + nx * y for x, y in corners_m if abs(nx * x + ny * y - c) < 1e-6]
+        first, last = min(on_edge), max(on_edge)
+        n = max(2, math.ceil((last - first) / (0.7 * CELL_M)) + 1)
+        rows += [(nx * c - ny * along, ny * c + nx * along, nx, ny) for along in np.linspace(first, last, n).tolist()]
+    return np.array(rows)

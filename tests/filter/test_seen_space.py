@@ -14,8 +14,7 @@ from pluto_bt.skills.outline import outline_of
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL, LOW, NEVER
 from pluto_bt.skills.seen_space import SeenSpace
 from pluto_bt.skills.sonar import SonarRing
-from pluto_bt.skills.stop_filter import rim_of
-from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, first_trouble
+from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, first_trouble, rim_of
 from tests.chain.robots import ATRV2, PIONEER
 
 OUTLINE = outline_of(ATRV2.body.outline_m)
