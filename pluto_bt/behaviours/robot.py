@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
+from pluto_bt.blackboard.codes import MotionStatus, MovetoStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
+from pluto_bt.skills.sight import ScanView
+
+if TYPE_CHECKING:
+    from pluto_bt.behaviours.surroundings import Surroundings
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +35,16 @@ class Robot(Protocol):
     def map(self) -> World | None:
         """The a-priori map."""
 
-    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+    @property
+    def surroundings(self) -> Surroundings:
+        """The local map and what belongs to it."""
+
+    def scan_views(self) -> Sequence[ScanView]:
+        """The laser scans that came since the last call, oldest first, each with the place it was taken from (dead reckoning)."""
+
+    def command(
+        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+    ) -> Ticket:
         """Post a command to motion; within one tick the newest wins. `tolerance_m` 0 = avoidance's own."""
 
     def status(self, ticket: Ticket) -> FVectorState | None:
@@ -46,6 +61,9 @@ class Robot(Protocol):
 
     def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
         """Point the laser."""
+
+    def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
+        """What a job of motion shows in `element[2..3]`; None = as it is."""
 
     def say(self, text: str) -> None:
         """A line for operators."""

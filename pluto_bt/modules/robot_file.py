@@ -17,7 +17,7 @@ from pluto_bt.modules.marker import MarkerParameters
 from pluto_bt.runtime.parameters import build, override
 from pluto_bt.skills.avoid import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters
-from pluto_bt.skills.motion import MotionParameters
+from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.source import Faults, InputError, Place, did_you_mean
 from pluto_bt.source.toml_reader import read_toml
 
