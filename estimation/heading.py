@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Protocol
 
-from estimation.se2 import wrap_angle
+from pluto_bt.maps.geometry import wrap_angle
 
 
 class HeadingSource(Protocol):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from estimation.se2 import Pose2, wrap_angle
+from estimation.se2 import Pose2
+from pluto_bt.maps.geometry import wrap_angle
 
 LOW_QUALITY, BAD_HEADING, TOO_FAST, NOT_NEWER = "low-quality", "bad-heading", "too-fast", "not-newer"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from estimation.se2 import wrap_angle
+from pluto_bt.maps.geometry import wrap_angle
 
 
 class Odometer:

@@ -13,11 +13,6 @@ IDENTITY: Pose2 = (0.0, 0.0, 0.0)
 _SMALL_RAD = 1e-6  # below it, sin(a)/a differs from 1 by less than one part in 10^12
 
 
-def wrap_angle(angle_rad: float) -> float:
-    """The same angle, brought within [-pi, pi]."""
-    return math.remainder(angle_rad, math.tau)
-
-
 def compose(pose_a_b: Pose2, pose_b_c: Pose2) -> Pose2:
     """Frame c seen from frame a."""
     xa, ya, a = pose_a_b

@@ -34,7 +34,24 @@ def help_text() -> str:
 
 def main(argv: list[str] | None = None) -> int:
     """Run one command; returns its exit code."""
-    args = sys.argv[1:] if argv is None else argv
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):  # an old locale, or a file name in none, must not end in a traceback
+            stream.reconfigure(errors="backslashreplace")
+    try:
+        code = _command(sys.argv[1:] if argv is None else argv)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:  # the reader of our output has gone, as in `pluto nodes | head`
+        import os
+
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the interpreter complains when it flushes at exit
+        return 141
+    except KeyboardInterrupt:
+        return 130
+    return code
+
+
+def _command(args: list[str]) -> int:
     if not args:
         print(FIRST_STEPS)
         return 0
@@ -47,18 +64,18 @@ def main(argv: list[str] | None = None) -> int:
 
         print(f"pluto {__version__}")
         return 0
-    if name not in COMMANDS:
-        from pluto_bt.source import did_you_mean
+    from pluto_bt.source.faults import InputError, did_you_mean
 
+    if name not in COMMANDS:
         print(f'pluto: no command "{name}"; {did_you_mean(name, COMMANDS) or "`pluto --help` lists them"}', file=sys.stderr)
         return 2
     from importlib import import_module
 
     try:
         code: int = import_module(f"pluto_bt.commands.{name}").main(rest)
-    except BrokenPipeError:  # the reader of our output has gone, as in `pluto nodes | head`
-        sys.stderr.close()
-        return 141
+    except InputError as error:
+        print(error, file=sys.stderr)
+        return 2
     return code
 
 

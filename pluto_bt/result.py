@@ -40,9 +40,9 @@ class RunResult(msgspec.Struct, kw_only=True):
     @property
     def exit_code(self) -> int:
         """The exit code of `pluto run`."""
-        if self.reason == INTERRUPTED:
+        if self.result == "STOPPED" and self.reason == INTERRUPTED:  # a leaf of a user's may fail with any word
             return 130
-        if self.reason in SUPERVISION:
+        if self.result == "STOPPED" and self.reason in SUPERVISION:
             return 3
         return EXIT_CODES[self.result]
 

@@ -14,11 +14,12 @@ from typing import Any
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.gateway.listen import parse_address
+from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
 from pluto_bt.system import Options, System
-from pluto_bt.trees import Mission, MissionError, check_mission, load_mission
+from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 
 
@@ -28,10 +29,11 @@ class Runner:
     def __init__(self, inputs: Inputs, mission: Mission, clock: VirtualClock | MonotonicClock, options: Options) -> None:
         self.inputs = inputs
         self.mission = mission
-        System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()).rehearse()
+        rehearse(System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()))
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
+        self.loop = Loop(self.system)
         self.result = RunResult(result="STOPPED")
 
     @contextmanager
@@ -41,7 +43,7 @@ class Runner:
             yield
             return
         numbers = (signal.SIGINT, signal.SIGTERM)
-        old = [signal.signal(number, lambda *unused: self.system.interrupt()) for number in numbers]
+        old = [signal.signal(number, lambda *unused: self.loop.interrupt()) for number in numbers]
         try:
             yield
         finally:
@@ -50,7 +52,7 @@ class Runner:
 
     def run(self) -> RunResult:
         """Run to the end and sum up."""
-        self.system.run(self.mission)
+        self.loop.run(self.mission)
         self.result = self._sum_up()
         return self.result
 
@@ -64,12 +66,13 @@ class Runner:
         clearance_m = simulator.min_clearance_m
         activity = system.executive.core.mission
         return RunResult(
-            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=system.wall_time_s,
+            result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=self.loop.wall_time_s,
             ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
             hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
             trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
+            faults=[fault.as_json() for fault in self.inputs.warnings],
         )  # fmt: skip
 
     def _outcome(self) -> tuple[str, str, str]:
@@ -77,8 +80,8 @@ class Runner:
         system, activity = self.system, self.system.executive.core.mission
         if activity is not None and activity.error is not None:
             return "STOPPED", "leaf-error", activity.text
-        if system.ended is not None:
-            return system.ended
+        if system.guard.ended is not None:
+            return system.guard.ended
         if activity is None or activity.state == ABORTED:
             return "STOPPED", "stopped", "" if activity is None else activity.reason
         return ("SUCCESS" if activity.state == SUCCEEDED else "FAILURE"), activity.reason, activity.text
@@ -101,19 +104,16 @@ def make_runner(
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
 ) -> Runner:
-    """Check and load the mission, then make the robot around it.
+    """Load the mission, which `read_inputs` has checked, then make the robot around it.
 
-    Raises: MissionError with all faults, also those that BehaviorTree.CPP finds only while ticking; nothing heavy was imported by then.
+    Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
     topics = TopicGlobals()
     of_file: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "file": str(inputs.mission_path)}
-    faults = check_mission(inputs.mission_path, nodes, topics=topics, plugins=inputs.plugins, **of_file)
-    if any(fault.severity == "error" for fault in faults):
-        raise MissionError(faults)
 
     def load(text: str | Path, **more: Any) -> Mission:
-        return load_mission(text, nodes, clock, topics=topics, plugins=inputs.plugins, **more)
+        return load_mission(text, nodes, clock, topics=topics, **more)
 
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,

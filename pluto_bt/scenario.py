@@ -13,7 +13,7 @@ from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import Event
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
-from pluto_bt.system import TrackPoint
+from pluto_bt.track import TrackPoint
 
 
 @dataclass(frozen=True)
@@ -92,8 +92,9 @@ class Play:
             port=[f"{name}={text_of(value)}" for name, value in (ports or {}).items()],
         )  # fmt: skip
         events: list[Event] = []
-        inputs = read_inputs(request, self._folder)
+        leaves = tuple(nodes)
+        inputs = read_inputs(request, self._folder, leaves)
         how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway}
-        runner = make_runner(inputs, nodes=tuple(nodes), on_event=events.append, **how)
+        runner = make_runner(inputs, nodes=leaves, on_event=events.append, **how)
         runner.run()
         return Run(runner, events)

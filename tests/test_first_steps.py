@@ -61,6 +61,16 @@ def test_a_queue_stands_as_a_list_in_the_result() -> None:
 
 
 @pytest.mark.parametrize(
+    ("result", "reason", "code"),
+    [("SUCCESS", "", 0), ("FAILURE", "hung", 1), ("FAILURE", "interrupted", 1), ("STOPPED", "max-time", 1), ("REFUSED", "bad-input", 2),
+     ("STOPPED", "leaf-error", 3), ("STOPPED", "module-error", 3), ("STOPPED", "hung", 3), ("STOPPED", "base-lost", 3),
+     ("STOPPED", "interrupted", 130)],
+)  # fmt: skip
+def test_the_exit_code_tells_how_a_run_ended(result: str, reason: str, code: int) -> None:
+    assert RunResult(result=result, reason=reason).exit_code == code
+
+
+@pytest.mark.parametrize(
     ("name", "unit"),
     [("max_speed_mps", "m/s"), ("drift_dps_per_sqrt_s", "°/s/√s"), ("distance_noise_m_per_sqrt_m", "m/√m"), ("counts_per_m", "counts/m"),
      ("rate_percent_per_s", "%/s"), ("beams", "")],

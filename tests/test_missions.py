@@ -36,4 +36,3 @@ def test_an_obstacle_in_the_way_ends_the_trip_with_hindered(scenario: Any, tmp_p
     world.write_text(corridor.replace("</world>", '<script><at t="40"><place id="box" x="0.7" y="11"/></at></script></world>'), encoding="utf-8")
     run = scenario(str(world), mission="trip2.xml", platform="car", start="0.5,12,90", seed=1)
     assert (run.result, run.reason) == ("FAILURE", "hindered")
-    assert run.leaves["trip2"] == "FAILURE"

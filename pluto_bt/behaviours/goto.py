@@ -26,8 +26,6 @@ class GoTo(MotionLeaf):
     def begin(self, robot: Robot) -> Status | None:
         """One command; goto refreshes itself."""
         self._goal: tuple[float, float] = self.get_input("goal")
-        if not all(map(math.isfinite, self._goal)):
-            return self.fail("bad-command", f"goal {self._goal} is no place")
         turn_radps = math.radians(robot.platform.limits.max_turn_rate_dps)
         velocity = (self.max_speed_mps(robot), turn_radps)
         self.post(robot, CommandType.GOTO, self._goal, velocity, float(self.get_input("tolerance_m")), float(self.get_input("force")))

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from py_trees.common import Status
 from py_trees.ports import BehaviourWithPorts, PortInformation
 
 from pluto_bt.behaviours.robot import Robot
+from pluto_bt.runtime.clock import MissionClock
 
 NO_PORTS: Final[dict[str, PortInformation]] = {}
-
-
-class MissionClock(Protocol):
-    """The clock of the mission."""
-
-    def now_s(self) -> float:
-        """Seconds of the run."""
 
 
 class Leaf(BehaviourWithPorts):

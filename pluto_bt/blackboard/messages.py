@@ -194,7 +194,10 @@ class LocalMapState(Message, frozen=True, gc=False):
 
 
 class NodeState(msgspec.Struct, frozen=True, gc=False):
-    """One node of the tree as the outside sees it."""
+    """One node of the tree as others see it: `status` is IDLE, RUNNING, SUCCESS, FAILURE or SKIPPED (told in this very tick).
+
+    `kind` is the type's name, such as Sequence or GoTo; `depth` counts from 1; `since_s` is mission time.
+    """
 
     path: str
     kind: str

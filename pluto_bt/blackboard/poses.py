@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from pluto_bt.blackboard.messages import Message, Pose
+from pluto_bt.blackboard.messages import ActuatorState, Message, Pair, Pose
 from pluto_bt.blackboard.store import Blackboard
 
 
@@ -32,3 +32,16 @@ def pose_at(board: Blackboard, name: str, stamp_s: float) -> Pose | None:
     x, y, z = (a[i] + share * (b[i] - a[i]) for i in range(3))
     theta, phi, psi = (blend_angle(a[i], b[i], share) for i in range(3, 6))
     return Pose(stamp_s, (x, y, z, theta, phi, psi), after.covariance, after.setter)
+
+
+def actuator_at(board: Blackboard, name: str, stamp_s: float) -> Pair | None:
+    """The two angles (rad) of an actuator topic such as the wrist's state at `stamp_s`, interpolated; None if its history does not reach there."""
+    pair = board.around(name, stamp_s)
+    if pair is None:
+        return None
+    before, after = pair[0].value, pair[1].value
+    if not isinstance(before, ActuatorState) or not isinstance(after, ActuatorState):
+        raise TypeError(f"{name} does not carry the state of an actuator")
+    share = share_between(before, after, stamp_s)
+    first_rad, second_rad = (blend_angle(before.position[i], after.position[i], share) for i in (0, 1))
+    return first_rad, second_rad

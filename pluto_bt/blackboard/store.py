@@ -84,7 +84,7 @@ class Blackboard:
             raise TopicError("two topics with one name")
         self._newest: list[Sample | None] = [None] * len(self.topics)
         self._history: list[deque[Sample] | None] = [deque(maxlen=topic.history) if topic.history > 1 else None for topic in self.topics]
-        self._writers: dict[int, str] = {}
+        self._given: set[int] = set()  # topics whose publisher has been handed out
         self._watchers: list[tuple[Callable[[], None], ...]] = [()] * len(self.topics)
         self._lock = threading.Lock()
 
@@ -93,7 +93,7 @@ class Blackboard:
         try:
             return self._index[name]
         except KeyError:
-            raise TopicError(f'no topic "{name}"; {did_you_mean(name, self._index) or "see `pluto describe`"}') from None
+            raise TopicError(f'no topic "{name}"; {did_you_mean(name, self._index) or "docs/missions.md lists them"}') from None
 
     def topic(self, name: str) -> Topic:
         """The row of the table."""
@@ -105,7 +105,9 @@ class Blackboard:
         topic = self.topics[index]
         if topic.writer != writer:
             raise TopicError(f"{name} is written by {topic.writer}, not by {writer}")
-        self._writers[index] = writer
+        if index in self._given:
+            raise TopicError(f"{writer} has the right to write {name} already")
+        self._given.add(index)
         return Publisher(self, index, topic)
 
     def newest(self, name: str) -> Sample | None:

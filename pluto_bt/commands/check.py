@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import argparse
 import json
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
 from pluto_bt.commands.options import Parser
 from pluto_bt.source import Fault, Faults, InputError
+from pluto_bt.source.text import read_bytes
 
 FORMATS: dict[str, Callable[[list[Fault]], str]] = {
     "text": lambda faults: "\n".join(fault.as_text() for fault in faults),
@@ -20,11 +23,9 @@ def main(argv: list[str]) -> int:
     """Check files; exit 0 without errors (warnings alone are 0), else 2."""
     args = _parser().parse_args(argv)
     faults = Faults()
+    _check_options(args, faults)
     for name in args.files:
-        try:
-            faults.extend(_check(name, args))
-        except InputError as error:
-            faults.extend(error.faults)
+        _check(name, args, faults)
     found = list(faults.in_order())
     if found or args.format != "text":
         print(FORMATS[args.format](found))
@@ -46,36 +47,43 @@ def _parser() -> Parser:
     return parser
 
 
-def _check(name: str, args: object) -> tuple[Fault, ...]:
+def _check_options(args: argparse.Namespace, faults: Faults) -> None:
+    """The faults of what serves all the files: plugins, and the world and the robot to check against."""
+    from pluto_bt.commands.inputs import check_world
+    from pluto_bt.commands.plugins import load_plugins
+
+    load_plugins(args.plugin, faults)
+    if args.world is not None:
+        check_world(args.world, args.platform, faults)
+
+
+def _check(name: str, args: argparse.Namespace, faults: Faults) -> None:
     """The faults of one file, whatever kind it is of."""
-    from pluto_bt.commands.inputs import Request, check_world
-
     path = Path(name)
-    if path.suffix == ".toml":
-        from pluto_bt.modules.robot_file import load_robot_file
+    if path.suffix.lower() == ".toml":
+        _check_robot(name, faults)
+    elif path.suffix.lower() in (".yaml", ".yml", ".map") or _is_world(path):
+        from pluto_bt.commands.inputs import check_world
 
+        check_world(name, args.platform, faults)
+    else:
+        from pluto_bt.commands.missions import check_mission_file
+
+        check_mission_file(name, args.tree, args.port, faults)
+
+
+def _check_robot(name: str, faults: Faults) -> None:
+    from pluto_bt.modules.robot_file import load_robot_file
+
+    try:
         load_robot_file(name)
-        return ()
-    if path.suffix in (".yaml", ".yml", ".map") or _is_world(path):
-        check_world(name, getattr(args, "platform", None))
-        return ()
-    from pluto_bt.commands.missions import check_mission_file
-
-    world = getattr(args, "world", None)
-    if world is not None:
-        check_world(world, getattr(args, "platform", None))
-    request = Request(name, tree=getattr(args, "tree", None), port=getattr(args, "port", ()), plugin=getattr(args, "plugin", ()))
-    return check_mission_file(request)
+    except InputError as error:
+        faults.extend(error.faults)
 
 
 def _is_world(path: Path) -> bool:
     """True if the file's first element is `<world>`; looks at its head only."""
-    try:
-        with path.open("rb") as file:
-            head = file.read(8192)
-    except OSError:
-        return False
-    import re
-
+    unread = Faults()  # a file that cannot be read is told by whoever reads it all
+    head = (read_bytes(path, str(path), unread) or b"")[:8192]
     first = re.search(rb"<([A-Za-z_][\w.-]*)", re.sub(rb"<!--.*?-->", b"", head, flags=re.S))
     return first is not None and first[1] == b"world"

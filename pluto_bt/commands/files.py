@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import os
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -25,19 +25,23 @@ def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) 
     if "/" not in bare:
         candidates += [shipped / bare] + [shipped / f"{bare}{ending}" for ending in endings]
     for candidate in candidates:
-        if candidate.is_file():
+        if os.path.isfile(candidate):  # unlike Path.is_file, False for whatever cannot be a name
             return candidate
+    found = "a folder" if os.path.isdir(name) else "no ordinary file" if os.path.lexists(name) else name or "nothing"
     known = sorted(path.name for path in shipped.iterdir() if path.suffix in endings)
-    faults.error(Place(name), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}", found=name,
-                 mend=did_you_mean(Path(name).name, known))  # fmt: skip
+    faults.error(Place(name or f'{kind} ""'), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}",
+                 found=found, mend=did_you_mean(Path(name).name, known))  # fmt: skip
     return None
 
 
 def refuse_shadowed_packages() -> None:
-    """Exit if a user's own folder `sim`, `drivers`, … hides the one that belongs to pluto_bt."""
+    """Raises InputError if a user's own folder `sim`, `drivers`, … hides the one that belongs to pluto_bt."""
+    faults = Faults()
     for package in ("sim", "drivers", "estimation", "missions"):
         spec = find_spec(package)
         where = Path(spec.origin).resolve().parents[1] if spec is not None and spec.origin else None
         if where != package_root():
-            found = "nothing" if spec is None else str(spec.origin or list(spec.submodule_search_locations or ()))
-            sys.exit(f'pluto: the package "{package}" of pluto_bt is hidden by {found}; start pluto from another folder or rename that one')
+            found = "nothing" if spec is None else str(spec.origin or ", ".join(spec.submodule_search_locations or ()))
+            what, mend = f'the package "{package}" of pluto_bt is hidden', "start pluto from another folder, or rename that one"
+            faults.error(Place("pluto"), "shadowed-package", what, expected=str(package_root() / package), found=found, mend=mend)
+    faults.raise_errors()

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import argparse
-import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-import numpy as np
-
 from pluto_bt.commands.files import find_file
-from pluto_bt.maps.load import load_world
-from pluto_bt.maps.placement import placed_outline, what_stands_at
-from pluto_bt.maps.world import SetTopic, World
+from pluto_bt.commands.missions import mission_faults
+from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
+from pluto_bt.commands.plugins import load_plugins
+from pluto_bt.commands.world_checks import check_script, check_start, in_file
+from pluto_bt.maps.load import read_world
+from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
-from pluto_bt.source import Faults, InputError, Place, did_you_mean
+from pluto_bt.source import Fault, Faults, InputError, Place
 
-Pose = tuple[float, float, float]
 DEFAULT_WORLD, DEFAULT_PLATFORM = "yard.xml", "atrv2"
 
 
@@ -54,7 +53,7 @@ class Inputs:
     seed: int
     ports: dict[str, str]
     tree: str | None
-    plugins: tuple[str, ...]
+    warnings: tuple[Fault, ...] = ()
 
 
 def add_input_options(parser: argparse.ArgumentParser) -> None:
@@ -71,119 +70,68 @@ def add_input_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes may be used; may be repeated")
 
 
-def read_inputs(request: Request, beside: Path | None = None) -> Inputs:
-    """Read and check all inputs but the mission itself.
+def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[type] = (), faults: Faults | None = None) -> Inputs:
+    """Read and check mission, world, map, platform and options.
 
+    Args:
+        beside: a folder where files are looked for too.
+        nodes: classes of leaves that the mission may use.
+        faults: what was found wrong so far, told together with all else.
     Raises: InputError with every fault found.
     """
-    faults = Faults()
-    mission_path = find_file("mission", request.mission, faults, beside)
-    world = _world(request.world or DEFAULT_WORLD, faults, beside)
-    a_priori = _world(request.map, faults, beside) if request.map else None
-    robot = _robot(request.platform or (world.robot.platform if world else "") or DEFAULT_PLATFORM, request.set, faults, beside)
-    start = _start(request.start, faults)
-    seed = _seed(request.seed, faults)
+    faults = faults if faults is not None else Faults()
+    load_plugins(request.plugin, faults)
     ports = read_ports(request.port, faults)
-    if world is not None and robot is not None:
-        start = start or world.robot.pose or (0.0, 0.0, 0.0)
-        _check_place(world, robot, start, Place(f"--start {request.start}") if request.start else world.robot.place, faults)
-        _check_topics(world, faults)
+    mission_path = find_file("mission", request.mission, faults, beside)
+    if mission_path is not None:
+        faults.extend(mission_faults(mission_path, request.mission, nodes, request.tree, ports))
+    world = _world(DEFAULT_WORLD if request.world is None else request.world, faults, beside)
+    a_priori = None if request.map is None else _world(request.map, faults, beside)
+    robot = _robot(request.platform, world, request.set, faults, beside)
+    start, seed = read_start(request.start, faults), read_seed(request.seed, faults)
+    if world is not None:
+        if start is None and request.start is None:
+            start = world.robot.pose or (0.0, 0.0, 0.0)
+        if robot is not None and start is not None:
+            check_start(world, robot, start, request.start, faults)
+        check_script(world, faults)
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
-    return Inputs(mission_path, world, a_priori, robot, start, world.seed if seed is None else seed, ports, request.tree, tuple(request.plugin))
+    seed = world.seed if seed is None else seed
+    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order())
+
+
+def check_world(name: str, platform: str | None, faults: Faults) -> None:
+    """Check a world alone: its file, its robot and that one's place, the topics and modules of its script."""
+    world = _world(name, faults, None)
+    robot = _robot(platform, world, (), faults, None)
+    if world is None:
+        return
+    if robot is not None and world.robot.pose is not None:
+        check_start(world, robot, world.robot.pose, None, faults)
+    check_script(world, faults)
 
 
 def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
     path = find_file("world", name, faults, beside)
     if path is None:
         return None
+    return read_world(path, name if path == Path(name) else str(path), faults)
+
+
+def _robot(asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
+    """The robot asked for, else the world's, else the default; a path in a world file is taken from its folder, too."""
+    named = world.robot.platform if world is not None and asked is None else ""
+    name = asked if asked is not None else named or DEFAULT_PLATFORM
+    folders = [beside] if beside is not None else []
+    if named and world is not None:
+        folders.append(Path(world.file).parent)
+    path = next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
     try:
-        return load_world(path, name)
+        return load_robot_file(path, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
     except InputError as error:
         faults.extend(error.faults)
         return None
 
 
-def _robot(name: str, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
-    local = beside / name if beside is not None else None
-    try:
-        return load_robot_file(str(local) if local is not None and local.is_file() else name, settings)
-    except InputError as error:
-        faults.extend(error.faults)
-        return None
-
-
-def _start(text: str | None, faults: Faults) -> Pose | None:
-    if text is None:
-        return None
-    try:
-        x, y, deg = (float(word) for word in text.split(","))
-        if not all(map(math.isfinite, (x, y, deg))):
-            raise ValueError
-    except ValueError:
-        faults.error(Place(f"--start {text}"), "bad-value", "a start pose is three numbers", expected="X,Y,DEG, for example 0.5,12,90", found=text)
-        return None
-    return (x, y, math.remainder(math.radians(deg), math.tau))
-
-
-def _seed(text: str | None, faults: Faults) -> int | None:
-    if text is None:
-        return None
-    if not text.isdecimal() or int(text) >= 1 << 63:
-        faults.error(Place(f"--seed {text}"), "bad-value", "a seed is a whole number from 0 to 2^63 - 1", found=text)
-        return None
-    return int(text)
-
-
-def read_ports(settings: Sequence[str], faults: Faults) -> dict[str, str]:
-    """`--port NAME=VALUE` settings as a table."""
-    ports: dict[str, str] = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals or not name:
-            faults.error(Place(f"--port {setting}"), "bad-port", "an input has the form NAME=VALUE", found=setting)
-        ports[name] = value
-    return ports
-
-
-def check_world(name: str, platform: str | None) -> None:
-    """Check a world alone: its file, its robot's place, the topics that its script sets.
-
-    Raises: InputError with every fault found.
-    """
-    faults = Faults()
-    world = _world(name, faults, None)
-    if world is not None:
-        robot = _robot(platform or world.robot.platform or DEFAULT_PLATFORM, (), faults, None)
-        if robot is not None and world.robot.pose is not None:
-            _check_place(world, robot, world.robot.pose, world.robot.place, faults)
-        _check_topics(world, faults)
-    faults.raise_errors()
-
-
-def _check_place(world: World, robot: RobotFile, start: Pose, place: Place, faults: Faults) -> None:
-    hit = what_stands_at(world, placed_outline(np.array(robot.body.outline_m), start))
-    if hit:
-        faults.error(place, "start-blocked", f'the robot would start inside "{hit}"', found=f"{start[0]:g},{start[1]:g},{math.degrees(start[2]):g}",
-                     mend="give a free place with --start X,Y,DEG")  # fmt: skip
-
-
-def _check_topics(world: World, faults: Faults) -> None:
-    """`<set>` writes only topics whose writer is `world`."""
-    from pluto_bt.blackboard.messages import Flag
-    from pluto_bt.blackboard.topics import TOPICS
-
-    known = [topic.name for topic in TOPICS if topic.writer == "world" and topic.type is Flag]
-    for event in world.script:
-        for action in event.actions:
-            if isinstance(action, SetTopic) and action.topic not in known:
-                faults.error(action.place, "read-only", f'a world script cannot write "{action.topic}"', expected=f"one of: {', '.join(known)}",
-                             found=action.topic, mend=did_you_mean(action.topic, known))  # fmt: skip
-
-
-def as_faults(error: InputError) -> list[dict[str, str | int]]:
-    """The faults as `--json` shows them."""
-    return [fault.as_json() for fault in error.faults]
-
-
-__all__ = ["Inputs", "Request", "add_input_options", "as_faults", "check_world", "read_inputs", "read_ports"]
+__all__ = ["Inputs", "Request", "add_input_options", "check_world", "read_inputs"]

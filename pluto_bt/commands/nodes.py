@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import sys
-
 from pluto_bt.commands.options import Parser
-from pluto_bt.source import Faults, InputError
+from pluto_bt.source import Faults
 
 
 def main(argv: list[str]) -> int:
@@ -14,15 +12,11 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--format", choices=("table", "xml"), default="table")
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes are listed too")
     args = parser.parse_args(argv)
-    from pluto_bt.commands.missions import load_plugins
+    from pluto_bt.commands.plugins import load_plugins
     from pluto_bt.trees.dump import nodes_table, nodes_xml
 
     faults = Faults()
     load_plugins(args.plugin, faults)
-    try:
-        faults.raise_errors()
-    except InputError as error:
-        print(error, file=sys.stderr)
-        return 2
+    faults.raise_errors()
     print(nodes_table() if args.format == "table" else nodes_xml())
     return 0

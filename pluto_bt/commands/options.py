@@ -3,14 +3,33 @@
 from __future__ import annotations
 
 import argparse
+import re
+import sys
 from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from pluto_bt.source import Place, did_you_mean
+from pluto_bt.source.faults import fail
 
 
 class Parser(argparse.ArgumentParser):
-    """argparse, but the word after an option that takes a value is that value, whatever it looks like."""
+    """argparse, but the word after an option that takes a value is that value, whatever it looks like; and mistakes are faults."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(allow_abbrev=False, **settings)  # "--wor" must not become another option in the next version
+
+    def error(self, message: str) -> NoReturn:
+        """Raises InputError, after the usage."""
+        if sys.stderr is not None:
+            self.print_usage(sys.stderr)
+        fail(Place(self.prog), "bad-usage", message, mend=self._nearest(message))
+
+    def _nearest(self, message: str) -> str:
+        strange = re.search(r"unrecognized arguments: (--?[\w-]+)", message)
+        return did_you_mean(strange[1], self._option_string_actions) if strange else ""
 
     def parse_args(self, args: Sequence[str], namespace: None = None) -> argparse.Namespace:  # type: ignore[override]  # argv is always given here
-        """Parse; on a mistake print it with the usage and exit 2."""
+        """Parse. Raises InputError for what cannot be understood."""
         return super().parse_args(self._joined(list(args)))
 
     def _joined(self, args: list[str]) -> list[str]:

@@ -3,28 +3,47 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
 
 from pluto_bt.source import Faults, Place
 
+INPUT_ENDINGS = (".xml", ".yaml", ".yml", ".map", ".toml", ".py")  # a slip of the hand must not cost a mission
 
-def check_outputs(args: argparse.Namespace) -> None:
-    """Raises InputError if a file to be written cannot be."""
-    faults = Faults()
+
+def check_outputs(args: argparse.Namespace, faults: Faults) -> None:
+    """A fault for each file that could not be written, and for `--speed` without `--realtime`."""
     _check(args.plot, "--plot", (".png", ".svg"), faults)
     _check(args.trace, "--trace", (), faults)
-    if not args.realtime and args.speed != 1.0:
-        faults.error(Place("--speed"), "bad-option", "--speed goes with --realtime; lockstep always runs as fast as it can")
-    faults.raise_errors()
+    if not args.realtime and args.speed is not None:
+        what, mend = "--speed goes with --realtime; lockstep always runs as fast as it can", "add --realtime, or drop --speed"
+        faults.error(Place("--speed"), "bad-option", what, expected="--realtime", found=f"--speed {args.speed} alone", mend=mend)
 
 
 def _check(name: str | None, option: str, endings: tuple[str, ...], faults: Faults) -> None:
     if name is None:
         return
-    path = Path(name)
+    place, path = Place(f"{option} {name}"), Path(name)
     if endings and path.suffix not in endings:
-        faults.error(Place(f"{option} {name}"), "bad-option", "unknown picture format", expected=" or ".join(endings), found=path.suffix or name)
-    if not path.parent.is_dir():
-        faults.error(Place(f"{option} {name}"), "no-such-folder", f"the folder {path.parent} does not exist", mend="make it first")
-    elif path.is_dir():
-        faults.error(Place(f"{option} {name}"), "is-a-folder", f"{path} is a folder")
+        faults.error(place, "bad-option", "unknown picture format", expected=" or ".join(endings), found=path.suffix or name or "nothing")
+    elif path.suffix in INPUT_ENDINGS:
+        faults.error(place, "bad-option", "this is the ending of an input file", expected="FILE.jsonl", found=path.suffix)
+    elif os.path.isdir(path):
+        faults.error(place, "is-a-folder", f'"{name}" is a folder', expected="a file", found="a folder")
+    elif not os.path.isdir(path.parent):
+        faults.error(place, "no-such-folder", f"the folder {path.parent} does not exist", expected="a folder", found="nothing", mend="make it first")
+    else:
+        _try(path, place, faults)
+
+
+def _try(path: Path, place: Place, faults: Faults) -> None:
+    """Whether a file can be written is known for sure only by opening it."""
+    is_new = not os.path.lexists(path)
+    try:
+        with path.open("ab"):
+            pass
+        if is_new:
+            path.unlink()
+    except (OSError, ValueError) as error:
+        found = str(getattr(error, "strerror", None) or error)
+        faults.error(place, "not-writable", f"cannot write {path}", expected="a file that may be written", found=found)

@@ -7,22 +7,18 @@ import sys
 
 from pluto_bt.commands.options import Parser
 from pluto_bt.result import RunResult
-from pluto_bt.source import InputError
+from pluto_bt.source import Faults, InputError
 
 
 def main(argv: list[str]) -> int:
     """Run one mission; returns the exit code of DESIGN.md, section 4."""
-    from pluto_bt.commands.files import refuse_shadowed_packages
-    from pluto_bt.commands.inputs import as_faults
-
-    refuse_shadowed_packages()
-    args = _parser().parse_args(argv)
+    wants_json = "--json" in argv  # known even if the command line cannot be understood
     try:
-        result = _run(args)
+        result = _run(_parser().parse_args(argv))
     except InputError as error:
         print(error, file=sys.stderr)
-        result = RunResult(result="REFUSED", reason="bad-input", faults=as_faults(error))
-    if args.json:
+        result = RunResult(result="REFUSED", reason="bad-input", faults=[fault.as_json() for fault in error.faults])
+    if wants_json:
         print(result.as_json(), flush=True)
     return result.exit_code
 
@@ -33,8 +29,8 @@ def _parser() -> Parser:
     parser = Parser(prog="pluto run", description="Run a mission in a simulated world.")
     add_input_options(parser)
     parser.add_argument("--realtime", action="store_true", help="the same modules in threads, at the pace of the clock")
-    parser.add_argument("--speed", type=_positive, default=1.0, metavar="FACTOR", help="with --realtime: run that many times faster")
-    parser.add_argument("--max-time", type=_positive, metavar="S", help="stop after this many seconds of the run")
+    parser.add_argument("--speed", metavar="FACTOR", help="with --realtime: run that many times faster")
+    parser.add_argument("--max-time", metavar="S", help="stop after this many seconds of the run")
     parser.add_argument("--watch", action="store_true", help="show the live tree on the terminal")
     parser.add_argument("--plot", metavar="FILE", help="draw world, path, goals and contacts (.png or .svg)")
     parser.add_argument("--trace", metavar="FILE.jsonl", help="write one line a tick and a command")
@@ -43,24 +39,25 @@ def _parser() -> Parser:
     return parser
 
 
-def _positive(text: str) -> float:
-    value = float(text)
-    if not 0.0 < value < float("inf"):
-        raise argparse.ArgumentTypeError("a number above 0")
-    return value
-
-
 def _run(args: argparse.Namespace) -> RunResult:
+    from pluto_bt.commands.files import refuse_shadowed_packages
     from pluto_bt.commands.inputs import Request, read_inputs
+    from pluto_bt.commands.option_values import check_gateway, read_positive
     from pluto_bt.commands.outputs import check_outputs
+
+    refuse_shadowed_packages()
+    faults = Faults()
+    check_outputs(args, faults)
+    check_gateway(args.gateway, faults)
+    speed, max_time_s = read_positive(args.speed, "--speed", faults), read_positive(args.max_time, "--max-time", faults)
+    inputs = read_inputs(Request.of(args), faults=faults)
+    for warning in inputs.warnings:
+        print(warning.as_text(), file=sys.stderr)
     from pluto_bt.commands.progress import Progress
+    from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
-    check_outputs(args)
-    inputs = read_inputs(Request.of(args))
     progress = Progress(sys.stderr if args.json else sys.stdout, watch=args.watch)
-    from pluto_bt.runner import make_runner
-
-    runner = make_runner(inputs, realtime=args.realtime, speed=args.speed, max_time_s=args.max_time, trace_path=args.trace, gateway=args.gateway,
+    runner = make_runner(inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, gateway=args.gateway,
                          on_event=progress.event, on_progress=progress.show)  # fmt: skip
     with runner.interruptible():
         result = runner.run()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,23 +19,41 @@ def placed_outline(outline_m: Points, pose: tuple[float, float, float]) -> Point
 
 
 def what_stands_at(world: World, outline_m: Points) -> str:
-    """The id of the first solid thing that overlaps the outline (n, 2) in the map frame, or "" if the place is free."""
-    for shape in world.shapes:
-        if shape.kind != "hole" and not shape.absent and _overlaps(shape, outline_m):
+    """The id of the first solid thing, hole or actor that overlaps the outline (n, 2) in the map frame, or "" if the place is free."""
+    for shape in _near([shape for shape in world.shapes if not shape.absent], outline_m):
+        if _overlaps(shape, outline_m):
             return shape.id or shape.kind
+    for actor in world.actors:
+        if not actor.absent and _in_circle(outline_m, actor.waypoints[:1], actor.radius_m):
+            return actor.id
     if world.grid is not None and _covers_occupied_cell(world.grid, outline_m):
         return "the map"
     return ""
 
 
+def _near(shapes: Sequence[Shape], outline_m: Points) -> Iterator[Shape]:
+    """The shapes whose box meets that of the outline; a world may have 50 000, so their boxes are compared all at once."""
+    if not shapes:
+        return
+    starts = np.cumsum([0, *(len(shape.points) for shape in shapes[:-1])])
+    points, reach_m = np.concatenate([shape.points for shape in shapes]), np.array([[shape.radius_m] for shape in shapes])
+    low, high = np.minimum.reduceat(points, starts, axis=0) - reach_m, np.maximum.reduceat(points, starts, axis=0) + reach_m
+    meets = np.all((low <= outline_m.max(axis=0)) & (high >= outline_m.min(axis=0)), axis=1)
+    for i in np.flatnonzero(meets):
+        yield shapes[int(i)]
+
+
 def _overlaps(shape: Shape, outline_m: Points) -> bool:
     if shape.kind == "circle":
-        centre = shape.points[:1]
-        return bool(_distance_to_edges(outline_m, centre)[0] < shape.radius_m or _inside(outline_m, centre)[0])
-    closed = shape.kind == "polygon"
+        return _in_circle(outline_m, shape.points[:1], shape.radius_m)
+    closed = shape.kind in ("polygon", "hole")
     if _edges_cross(_edges(shape.points, closed), _edges(outline_m, True)):
         return True
     return bool(_inside(outline_m, shape.points[:1])[0] or (closed and _inside(shape.points, outline_m[:1])[0]))
+
+
+def _in_circle(outline_m: Points, centre_m: Points, radius_m: float) -> bool:
+    return bool(_distance_to_edges(outline_m, centre_m)[0] < radius_m or _inside(outline_m, centre_m)[0])
 
 
 def _edges(points: Points, closed: bool) -> Points:

@@ -25,6 +25,7 @@ from pluto_bt.source.yaml_reader import read_yaml
 
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 MODES = ("trinary", "scale", "raw")
+MIN_RESOLUTION_M = 1e-4
 MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the rounding
 
 
@@ -36,8 +37,9 @@ def read_ros_map(path: Path, shown_name: str, faults: Faults) -> World | None:
     fields = _MapFields(values, places, faults)
     fields.warn_of_unknown_keys()
     resolution_m = fields.number("resolution", None, 0.0, MAX_METRES)
-    if resolution_m == 0.0:
-        fields.fault("resolution", "resolution must be greater than 0", "metres per pixel, for example 0.05")
+    if resolution_m < MIN_RESOLUTION_M:
+        what = "resolution must be greater than 0" if resolution_m == 0.0 else "the pixels are too small"
+        fields.fault("resolution", what, f"metres per pixel, at least {MIN_RESOLUTION_M:g}, for example 0.05")
     origin = fields.origin()
     occupied, free = fields.number("occupied_thresh", 0.65, 0.0, 1.0), fields.number("free_thresh", 0.25, 0.0, 1.0)
     if free > occupied:

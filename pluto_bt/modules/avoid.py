@@ -62,12 +62,17 @@ class Avoid:
                 return
             self._skill.accept(letter.command, now_s)
         status: FVectorState | None = self._drive_status()
+        has_it = letter is None and self._drive_has_it()  # a goto posts anew in each cycle, so ask before: drive tells of the last cycle's
         command = self._skill.step(now_s, self._senses(now_s, STILL if status is None else status.data))
         if command is not None:
             self._drive.post("avoid", command)
             self._sent = command
-        has_it = self._sent is None or self._drive_command() == self._sent
+        has_it = has_it or self._drive_has_it()
         self._link.tell(now_s, self._skill.status(now_s, status, has_it), None if letter is None else letter.command)
+
+    def _drive_has_it(self) -> bool:
+        """True if drive has accepted the last command that went down."""
+        return self._sent is None or bool(self._drive_command() == self._sent)
 
     def stop(self) -> None:
         """The thread stops: zero velocity below, and -10 for who asks."""

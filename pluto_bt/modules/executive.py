@@ -7,10 +7,9 @@ from collections.abc import Callable
 
 import msgspec
 
-from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, NodeState, Pose, TreeState
+from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, Pose, TreeState
 from pluto_bt.modules.context import Context
 from pluto_bt.runtime.supervision import Part
-from pluto_bt.trees import Mission
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
 
@@ -40,7 +39,8 @@ class Executive:
         """Nothing to take."""
 
     def stop(self) -> None:
-        """Nothing to let go."""
+        """Nobody decides any more: the robot stands."""
+        self.core.let_go()
 
     def say(self, level: str, code: str, source: str, text: str) -> None:
         """Queue a line for operators; any thread."""
@@ -54,7 +54,7 @@ class Executive:
             self._record(ticked, statuses)
             if statuses != self._shown_statuses:
                 self._shown_statuses = statuses
-                self._tree.put(TreeState(now_s, ticked.ticks, tuple(node_states(ticked.mission))), now_s)
+                self._tree.put(TreeState(now_s, ticked.ticks, tuple(ticked.mission.node_states())), now_s)
         self._show_mission(now_s)
         if self._steps % SHOW_MODULES_EVERY == 0:
             self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._system.parts)), now_s)
@@ -81,11 +81,6 @@ class Executive:
         if state != self._shown:
             self._shown = state
             self._mission.put(msgspec.structs.replace(state, stamp_s=now_s, ticks=activity.ticks), now_s)
-
-
-def node_states(mission: Mission) -> list[NodeState]:
-    """The nodes of a mission as the blackboard shows them."""
-    return [NodeState(node.path, node.kind, node.name, node.depth, node.status, node.feedback, node.since_s) for node in mission.node_states()]
 
 
 def module_state(part: Part) -> ModuleState:

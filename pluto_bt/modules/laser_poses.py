@@ -8,8 +8,8 @@ from estimation.covariance import Covariance, as_nine, moved
 from estimation.se2 import Pose2, between
 from estimation.se3 import Pose6, compose
 from estimation.track import Moment, Tilt
-from pluto_bt.blackboard.messages import ActuatorState, LaserPose
-from pluto_bt.blackboard.poses import blend_angle, share_between
+from pluto_bt.blackboard.messages import LaserPose
+from pluto_bt.blackboard.poses import actuator_at
 from pluto_bt.modules.context import Context
 
 
@@ -32,7 +32,7 @@ class LaserMount:
 
     def arm(self, stamp_s: float) -> Arm | None:
         """The laser at `stamp_s`; None if the wrist's history does not reach there."""
-        angles = self._wrist_at(stamp_s) if self._has_wrist else (0.0, 0.0)
+        angles = actuator_at(self._board, "wrist/state", stamp_s) if self._has_wrist else (0.0, 0.0)
         return None if angles is None else Arm((*self._xyz, angles[0], angles[1], 0.0), *angles)
 
     def planar(self, robot: Moment) -> Pose2 | None:
@@ -42,17 +42,6 @@ class LaserMount:
             return None
         x, y, _, theta, _, _ = compose(in_space(robot.pose_odom, robot.tilt), arm.pose_robot_laser)
         return between(robot.pose_odom, (x, y, theta))
-
-    def _wrist_at(self, stamp_s: float) -> tuple[float, float] | None:
-        pair = self._board.around("wrist/state", stamp_s)
-        if pair is None:
-            return None
-        before, after = pair[0].value, pair[1].value
-        if not isinstance(before, ActuatorState) or not isinstance(after, ActuatorState):
-            return None
-        share = share_between(before, after, stamp_s)
-        pan, tilt = (blend_angle(before.position[i], after.position[i], share) for i in (0, 1))
-        return pan, tilt
 
 
 def in_space(pose: Pose2, tilt: Tilt) -> Pose6:

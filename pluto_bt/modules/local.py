@@ -16,10 +16,11 @@ import msgspec
 from msgspec import Meta
 
 from estimation.covariance import StepNoise, as_nine, from_nine, moved
-from estimation.se2 import compose, inverse, wrap_angle
+from estimation.se2 import compose, inverse
 from estimation.track import Track
 from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import Pose, ScanTiming
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import LaserMount, laser_pose
 from pluto_bt.modules.motion_sources import MotionSources

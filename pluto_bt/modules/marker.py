@@ -10,10 +10,10 @@ from msgspec import Meta
 
 from drivers.records import MarkerRecord
 from estimation.marker_gate import MarkerGate
-from estimation.se2 import wrap_angle
 from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import MarkerState, Pose
 from pluto_bt.blackboard.poses import pose_at
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 
 

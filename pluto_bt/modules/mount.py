@@ -6,7 +6,7 @@ import math
 
 from pluto_bt.blackboard import Blackboard
 from pluto_bt.blackboard.messages import ActuatorState, LaserScan
-from pluto_bt.blackboard.poses import share_between
+from pluto_bt.blackboard.poses import actuator_at
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
@@ -34,12 +34,8 @@ class LaserMount:
         """Pan and tilt at a time, interpolated; the newest known where the history does not reach; 0 without a wrist."""
         if not self._has_wrist:
             return 0.0, 0.0
-        pair = self._board.around("wrist/state", stamp_s)
-        if pair is None:
-            newest = self._board.newest("wrist/state")
-            return newest.value.position if newest is not None and isinstance(newest.value, ActuatorState) else (0.0, 0.0)
-        before, after = pair[0].value, pair[1].value
-        assert isinstance(before, ActuatorState) and isinstance(after, ActuatorState)
-        share = share_between(before, after, stamp_s)
-        pan, tilt = (a + share * (b - a) for a, b in zip(before.position, after.position, strict=True))
-        return pan, tilt
+        then = actuator_at(self._board, "wrist/state", stamp_s)
+        if then is not None:
+            return then
+        newest = self._board.newest("wrist/state")
+        return newest.value.position if newest is not None and isinstance(newest.value, ActuatorState) else (0.0, 0.0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,8 +18,10 @@ from pluto_bt.skills.avoid import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.source import Faults, InputError, Place, did_you_mean
+from pluto_bt.source.text import MIB, read_text
 from pluto_bt.source.toml_reader import read_toml
 
+MAX_BYTES = MIB
 SHIPPED = ("atrv2", "car", "jbot", "pioneer")
 
 
@@ -36,52 +37,52 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
     marker: MarkerParameters = MarkerParameters()
 
 
-def load_robot_file(name: str, settings: Sequence[str] = ()) -> RobotFile:
+def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | None = None) -> RobotFile:
     """The robot file of a shipped platform or at a path, with `--set` settings applied.
 
+    Args:
+        named_at: where a file that does not exist is told, if not by its own name.
     Raises: InputError with every fault of the file and of the settings.
     """
     faults = Faults()
-    text = _text_of(name, faults)
+    text = _text_of(name, named_at or Place(name), faults)
     table: dict[str, Any] = {}
     robot: RobotFile | None = None
-    if text is not None:
+    if text is None:
+        override(table, settings, RobotFile, faults)  # their faults are told, too
+    else:
         table, locate = read_toml(text, name if name.endswith(".toml") else f"{name}.toml", faults)
-        if not faults.has_errors:
-            override(table, settings, RobotFile, faults)
-            robot = build(RobotFile, table, locate, faults)
-            if robot is not None:
-                _check_body(robot, locate(("body", "outline_m")), faults)
+        is_read = not faults.has_errors
+        set_at = override(table, settings, RobotFile, faults)
+        if is_read:
+            robot = build(RobotFile, table, lambda path: set_at.get(path) or locate(path), faults)
+        if robot is not None:
+            _check_body(robot, locate(("body", "outline_m")), faults)
     faults.raise_errors()
     assert robot is not None  # build gives None only together with a fault
     return robot
 
 
-def _text_of(name: str, faults: Faults) -> str | None:
-    """The file's text, or None with a fault that says where it was looked for."""
+def _text_of(name: str, named_at: Place, faults: Faults) -> str | None:
+    """The file's text, or None and a fault."""
     if name in SHIPPED:
         return (resources.files("pluto_bt") / "platforms" / f"{name}.toml").read_text(encoding="utf-8")
-    path = Path(name)
-    if path.suffix != ".toml":
-        faults.error(Place(name), "unknown-platform", f'no platform "{name}"', expected=f"one of {', '.join(SHIPPED)}, or a .toml file",
-                     found=name, mend=did_you_mean(name, SHIPPED))  # fmt: skip
+    if not name.endswith(".toml"):
+        faults.error(named_at, "unknown-platform", f'no platform "{name}"', expected=f"one of {', '.join(SHIPPED)}, or a .toml file",
+                     found=name or "nothing", mend=did_you_mean(name, SHIPPED))  # fmt: skip
         return None
-    try:
-        if path.stat().st_size > 1 << 20:
-            faults.error(Place(name), "too-large", "a platform file has at most 1 MiB", found=f"{path.stat().st_size} bytes")
-            return None
-        return path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        faults.error(Place(name), "unreadable", f"cannot read the platform file: {error}", mend="check the path; it is taken from the working folder")
-        return None
+    reading = Faults()
+    text = read_text(name, name, reading, max_bytes=MAX_BYTES)
+    for fault in reading.in_order():
+        place = Place(fault.file, fault.line, fault.column, fault.source_line) if fault.line else named_at
+        faults.error(place, fault.code, fault.message, expected=fault.expected, found=fault.found, mend=fault.mend)
+    return text
 
 
 def _check_body(robot: RobotFile, place: Place, faults: Faults) -> None:
     """What single values cannot tell: the outline is a polygon round the origin; an ackermann robot knows its turning radius."""
     outline = np.array(robot.body.outline_m)
-    if not np.all(np.isfinite(outline)):
-        faults.error(place, "bad-value", "body.outline_m has numbers that are not finite")
-    elif crossing(outline) is not None:
+    if crossing(outline) is not None:
         faults.error(place, "self-crossing", "body.outline_m crosses itself", mend="list the corners in order round the robot")
     elif is_flat(outline):
         faults.error(place, "no-area", "body.outline_m encloses no area")

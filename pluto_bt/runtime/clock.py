@@ -22,6 +22,13 @@ class Clock(Protocol):
         """Seconds since the start of the run."""
 
 
+class MissionClock(Protocol):
+    """All that a mission needs of a clock. One that also has `call_at(at_s, callback)` fires timers between ticks."""
+
+    def now_s(self) -> float:
+        """Seconds of the run."""
+
+
 class Timer:
     """A callback that a clock owes; `cancel` forgets it."""
 

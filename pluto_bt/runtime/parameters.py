@@ -7,6 +7,7 @@ once, each at its key. (Constructors of Structs do not check ranges; `convert` d
 from __future__ import annotations
 
 import json
+import math
 import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -81,12 +82,23 @@ def _value(declared: Any, raw: Any, locate: Locate, faults: Faults, path: tuple[
         built = build(struct, raw, locate, faults, path)
         return _FAULTY if built is None else built
     try:
-        return msgspec.convert(raw, declared, strict=True)
+        value = msgspec.convert(raw, declared, strict=True)
+        if _is_finite(value):
+            return value
+        faults.error(locate(path), "bad-value", f"{'.'.join(path)}: not a finite number", expected=_kind_text(declared), found=_shown(raw))
+        return _FAULTY
     except msgspec.ValidationError as error:
         message = str(error).replace("`", "").partition(" - at ")[0]
         what = f"{'.'.join(path)}: {message[0].lower()}{message[1:]}"
         faults.error(locate(path), "bad-value", what, expected=_kind_text(declared), found=_shown(raw))
         return _FAULTY
+
+
+def _is_finite(value: Any) -> bool:
+    """No parameter may be endless or undefined: a robot with a top speed of infinity is none."""
+    if isinstance(value, (list, tuple)):
+        return all(map(_is_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)
 
 
 def _shown(raw: Any) -> str:
@@ -103,27 +115,44 @@ def _struct_in(declared: Any) -> type[msgspec.Struct] | None:
     return declared if isinstance(declared, type) and issubclass(declared, msgspec.Struct) else None
 
 
-def override(table: dict[str, Any], settings: Sequence[str], kind: type[msgspec.Struct], faults: Faults) -> None:
-    """Write `--set a.b=VALUE` settings into a table, in place. VALUE is read as JSON if it is that, else as text."""
+def override(table: dict[str, Any], settings: Sequence[str], kind: type[msgspec.Struct], faults: Faults) -> dict[tuple[str, ...], Place]:
+    """Write `--set a.b=VALUE` settings into a table, in place. VALUE is read as JSON if it is that, else as text.
+
+    Returns: which parameters were set, each with its option as the place of a fault.
+    """
+    known = [row.name for row in describe(kind)] if settings else []
+    set_at: dict[tuple[str, ...], Place] = {}
     for setting in settings:
         place = Place(f"--set {setting}")
         name, equals, text = setting.partition("=")
         if not equals or not name:
             faults.error(place, "bad-setting", "a setting has the form PARAM=VALUE", expected="for example drive.max_speed_mps=0.4", found=setting)
-            continue
-        known = [row.name for row in describe(kind)]
-        if name not in known:
-            mend = did_you_mean(name, known) or "docs/platforms.md lists them"
-            faults.error(place, "unknown-parameter", f'unknown parameter "{name}"', found=name, mend=mend)
-            continue
-        *parents, leaf = name.split(".")
-        inner = table
-        for parent in parents:
-            inner = inner.setdefault(parent, {})
-        try:
-            inner[leaf] = json.loads(text)
-        except ValueError:
-            inner[leaf] = text
+        elif name not in known:
+            inside = [row for row in known if row.startswith(f"{name}.")]
+            expected = f"one of: {', '.join(inside[:20])}" if inside else "the name of a parameter of the platform file"
+            what, mend = (f'"{name}" is a table' if inside else f'unknown parameter "{name}"'), did_you_mean(name, known)
+            faults.error(place, "unknown-parameter", what, expected=expected, found=name, mend=mend)
+        else:
+            path = tuple(name.split("."))
+            _put(table, path, _read(text))
+            set_at[path] = place
+    return set_at
+
+
+def _put(table: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
+    for parent in path[:-1]:
+        inner = table.setdefault(parent, {})
+        if not isinstance(inner, dict):
+            return  # the file has no table there, which is told when it is built
+        table = inner
+    table[path[-1]] = value
+
+
+def _read(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):  # no JSON, or some thousand brackets
+        return text
 
 
 def describe(kind: type[msgspec.Struct], prefix: str = "") -> tuple[Parameter, ...]:

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from pluto_bt.runtime.clock import wall_ns
+from pluto_bt.runtime.clock import NS, wall_ns
 from pluto_bt.runtime.component import Component
-from pluto_bt.runtime.table import NS, Module
+from pluto_bt.runtime.table import Module
 
 FIRST_BACK_OFF_NS = NS // 10
 LONGEST_BACK_OFF_NS = 5 * NS

@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
+from pluto_bt.runtime.clock import NS
 from pluto_bt.runtime.component import Component
 from pluto_bt.source import PlutoError
-
-NS = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,6 +30,7 @@ __all__ = ["Avoid", "AvoidParameters", "AvoidSenses"]
 
 SAME_MPS, SAME_RAD = 0.01, 0.004  # smaller changes of a command in force are not worth a new post
 REFRESH_S = 1.0  # a goto that has ended renews its zero velocity so often, so that drive does not time out
+AWAIT_S = 0.6  # who would walk into the robot within so long after it could have stopped is awaited standing
 LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean the platform's
 
 
@@ -232,6 +233,11 @@ class Avoid:
             allowed = allowed_share(free_s, twist, self._limits, self._latency_s)
             if allowed < share:
                 share, verdict = allowed, self._seen(points, which)
+        if share > 0.0 and wanted != STILL and points[:, 3:].any():
+            within_s = AWAIT_S + horizon_s(now, self._limits, self._latency_s)
+            _, which = first_contact(points, self._outline.planes, 0.0, 0.0, within_s)
+            if which >= 0:
+                return 0.0, self._seen(points, which)
         return share, verdict
 
     def _seen(self, points: Array, which: int) -> Verdict:

@@ -16,6 +16,7 @@ WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its
 MOVED_BEAMS = 2  # so many beams must end in former free space
 STEP_M = 0.5  # nothing that is tracked goes farther between two scans
 FASTEST_MPS = 2.0
+FOLLOW_S, FOLLOW_M = 1.0, 0.4  # who was seen walking is followed for so long where he is expected, also where only a part of him is in view
 
 
 class Movers:
@@ -24,6 +25,7 @@ class Movers:
     def __init__(self) -> None:
         self._last: tuple[Array, Beams] = (np.zeros((0, 2)), np.zeros(0, dtype=np.intp))
         self._stamp_s = -np.inf
+        self._walkers = np.zeros((0, 5))  # x, y at the last scan, velocity x, y, stamp of the scan that saw him walk
 
     def velocities(self, points: Array, beams: Beams, moved: Mask, stamp_s: float) -> tuple[Mask, Array]:
         """Which points belong to something that moves, and its velocity (0 where it was not seen before).
@@ -35,20 +37,28 @@ class Movers:
         """
         last, self._last = self._last, (points, beams)
         dt_s, self._stamp_s = stamp_s - self._stamp_s, stamp_s
-        velocity = np.zeros((len(points), 2))
-        if np.count_nonzero(moved) < MOVED_BEAMS:
-            return np.zeros(len(points), dtype=bool), velocity
+        expected = self._walkers[self._walkers[:, 4] > stamp_s - FOLLOW_S]
+        expected[:, :2] += expected[:, 2:4] * min(dt_s, 1.0)
+        self._walkers = np.zeros((0, 5))
+        if not len(points) or (np.count_nonzero(moved) < MOVED_BEAMS and not len(expected)):
+            return np.zeros(len(points), dtype=bool), np.zeros((len(points), 2))
         starts, sizes, centres, widths = _pieces(points, beams)
-        is_mover = (np.add.reduceat(moved.astype(np.intp), starts) >= MOVED_BEAMS) & (widths < WIDEST_M)
+        is_narrow = widths < WIDEST_M
+        walks = (np.add.reduceat(moved.astype(np.intp), starts) >= MOVED_BEAMS) & is_narrow
         before = np.zeros((0, 2))
         if len(last[0]) and 0.0 < dt_s < 1.0:
             _, _, before, widths_before = _pieces(*last)
             before = before[widths_before < WIDEST_M]
-        piece_velocity = np.zeros((len(starts), 2))
-        for i in np.flatnonzero(is_mover).tolist():
-            piece_velocity[i] = _velocity(centres[i], before, dt_s)
+        rows = np.zeros((len(starts), 5))  # as self._walkers
+        rows[:, :2], rows[:, 4] = centres, stamp_s
+        for i in np.flatnonzero(is_narrow).tolist():
+            if walks[i]:
+                rows[i, 2:4] = _velocity(centres[i], before, dt_s)
+            elif (k := _nearest(centres[i], expected, FOLLOW_M)) >= 0:
+                walks[i], rows[i, 2:] = True, expected[k, 2:]
+        self._walkers = rows[walks]
         piece = np.repeat(np.arange(len(starts)), sizes)
-        return is_mover[piece], piece_velocity[piece]
+        return walks[piece], rows[piece, 2:4]
 
 
 def _pieces(points: Array, beams: Beams) -> tuple[Beams, Beams, Array, Array]:
@@ -61,16 +71,22 @@ def _pieces(points: Array, beams: Beams) -> tuple[Beams, Beams, Array, Array]:
     return starts, ends - starts, centres, widths
 
 
+def _nearest(place: Array, others: Array, within_m: float) -> int:
+    """Which of the others (x, y, …) is nearest, -1 if none is so near."""
+    if not len(others):
+        return -1
+    lengths = np.hypot(others[:, 0] - place[0], others[:, 1] - place[1])
+    nearest = int(np.argmin(lengths))
+    return nearest if lengths[nearest] <= within_m else -1
+
+
 def _velocity(centre: Array, before: Array, dt_s: float) -> Array:
     """From the nearest piece of the scan before; 0 if none was near."""
-    if not len(before):
+    nearest = _nearest(centre, before, STEP_M)
+    if nearest < 0:
         return np.zeros(2)
-    steps = centre - before
-    lengths = np.hypot(steps[:, 0], steps[:, 1])
-    nearest = int(np.argmin(lengths))
-    if lengths[nearest] > STEP_M:
-        return np.zeros(2)
-    return np.asarray(steps[nearest] / max(dt_s, float(lengths[nearest]) / FASTEST_MPS))
+    step = centre - before[nearest]
+    return np.asarray(step / max(dt_s, float(np.hypot(step[0], step[1])) / FASTEST_MPS))
 
 
 @kernel

@@ -85,7 +85,7 @@ class Steer:
         detour_rad = wrap(chosen_rad - goal_rad)
         if goal_is_free:
             self._side = 0.0
-        elif self._side == 0.0 and abs(detour_rad) > SIDE_TAKEN_RAD:
+        elif abs(detour_rad) > SIDE_TAKEN_RAD:  # also when the side taken proves the longer one: then the other counts as taken
             self._side = math.copysign(1.0, detour_rad)
 
 

@@ -53,7 +53,7 @@ class Fault:
 
     def as_text(self) -> str:
         """The report a person reads: head line, caret line, then what was expected, found and how to mend it."""
-        where = self.file or "<text>"
+        where = _quotable(self.file) or "<text>"
         if self.line:
             where += f":{self.line}:{self.column}" if self.column else f":{self.line}"
         lines = [f"{where}: {self.severity}: {self.message}"]
@@ -66,7 +66,8 @@ class Fault:
     def as_json(self) -> dict[str, str | int]:
         """The fields of `check --format json` (DESIGN.md, section 4)."""
         names = ("file", "line", "column", "severity", "code", "message", "expected", "found", "mend")
-        return {name: getattr(self, name) for name in names}
+        fields = {name: getattr(self, name) for name in names}
+        return fields | {"file": self.file.encode("utf-8", "backslashreplace").decode()}  # file names need be no Unicode text
 
 
 class InputError(PlutoError):
@@ -95,7 +96,7 @@ class Faults:
 
     def _add(self, place: Place, severity: Severity, code: str, message: str, expected: str, found: str, mend: str) -> None:
         if len(self._faults) < self.LIMIT:
-            message, expected, found, mend = _short(message), _short(expected), _short(found), _short(mend)
+            message, expected, found, mend = map(_quotable, (message, expected, found, mend))
             self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
 
     def extend(self, faults: Iterable[Fault]) -> None:
@@ -140,9 +141,10 @@ def did_you_mean(word: str, known: Iterable[str]) -> str:
     return f'did you mean "{by_lower[near[0]]}"?' if near else ""
 
 
-def _short(text: str, most: int = 600) -> str:
-    """A report quotes the input, which may hold a word of megabytes."""
-    return text if len(text) <= most else text[: most - 1] + "…"
+def _quotable(text: str, most: int = 600) -> str:
+    """A report quotes the input, which may hold a word of megabytes, or characters that play tricks on a terminal or are no Unicode text."""
+    text = text if len(text) <= most else text[: most - 1] + "…"
+    return text if text.isprintable() else "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def _window(line: str, column: int, width: int = 150) -> tuple[str, int]:

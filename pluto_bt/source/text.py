@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import codecs
+import os
 import re
+import stat
 from pathlib import Path
 
 from pluto_bt.source.faults import Faults, Place, did_you_mean
@@ -61,7 +63,10 @@ def read_bytes(path: str | Path, shown_name: str, faults: Faults, *, max_bytes: 
     """The content of a file; None and a fault if it is missing, a folder, unreadable or longer than `max_bytes`."""
     path, place = Path(path), Place(shown_name)
     try:
-        with path.open("rb") as file:
+        with open(path, "rb", opener=_open_at_once) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                faults.error(place, "no-file", f'"{shown_name}" is no ordinary file', expected="a file", found="a pipe or a device")
+                return None
             data = file.read(max_bytes + 1)
     except FileNotFoundError:
         faults.error(place, "no-file", f'there is no file "{shown_name}"', expected="a file", found="nothing", mend=_near_name(path))
@@ -75,6 +80,11 @@ def read_bytes(path: str | Path, shown_name: str, faults: Faults, *, max_bytes: 
             return data
         faults.error(place, "too-large", "the file is too large", expected=f"at most {max_bytes / MIB:g} MiB", found="more")
     return None
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Opening a pipe that nobody writes to would wait for ever."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def decode(data: bytes, shown_name: str, faults: Faults, encoding: str = "") -> str | None:

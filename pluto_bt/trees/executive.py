@@ -123,6 +123,11 @@ class Executive:
         """Let a paused mission go on where its tree stands; motion leaves command again when they are next ticked."""
         self._orders.append(self._resume)
 
+    def let_go(self) -> None:
+        """Stop the robot if something is at work; it stays in its state, and goes on when `step` is called again."""
+        if self.active is not None and self.active.state == RUNNING:
+            self._body.stop()
+
     def abort(self, reason: str) -> None:
         """Stop the robot now and end the mission and any errand."""
         self._body.stop()

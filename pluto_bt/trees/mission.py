@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Any, Final
 
 from pluto_bt.behaviours.ports import text_of
+from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.board_view import BoardView
 from pluto_bt.trees.controls.reactive import ReactiveSequence
 from pluto_bt.trees.controls.sequence import Sequence
@@ -18,7 +19,7 @@ from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
 from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.scopes import Board
-from pluto_bt.trees.tracked import NodeState, Tracked
+from pluto_bt.trees.tracked import Tracked
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
 

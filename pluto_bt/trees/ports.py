@@ -57,6 +57,8 @@ def range_problem(model: PortModel, value: Any) -> str:
     for number in _numbers_in(value):
         if math.isnan(number):
             return "not a number"
+        if math.isinf(number) and model.unit:  # what has a unit is a quantity of the world
+            return "not finite"
         if model.ge is not None and number < model.ge:
             return f"{number:g} is below {model.ge:g}"
         if model.le is not None and number > model.le:

@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
+from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.engine.status import IDLE, NAME_OF_STATUS, SKIPPED, Result
 from pluto_bt.trees.loader.expand import Plan
 
 LETTERS = {status: "K" if name == "SKIPPED" else name[0] for status, name in NAME_OF_STATUS.items()}
-
-
-@dataclass(frozen=True, slots=True)
-class NodeState:
-    """One line of the tree as others see it: `status` is IDLE, RUNNING, SUCCESS, FAILURE or SKIPPED (told in this very tick).
-
-    `kind` is the type's name, such as Sequence or GoTo; `depth` counts from 1; `since_s` is mission time.
-    """
-
-    path: str
-    kind: str
-    name: str
-    depth: int
-    status: str
-    feedback: str
-    since_s: float
 
 
 class Tracked:

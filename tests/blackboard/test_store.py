@@ -28,6 +28,8 @@ def test_a_topic_has_one_type_one_writer_and_counts_its_values() -> None:
     assert board.newest("ATRV2/Battery") == (BatteryState(1.0, 24.0), 2, 1.5)
     with pytest.raises(TopicError, match="is written by base, not by sick"):
         board.publisher("ATRV2/Battery", "sick")
+    with pytest.raises(TopicError, match="base has the right to write ATRV2/Battery already"):
+        board.publisher("ATRV2/Battery", "base")
     with pytest.raises(TopicError, match="carries BatteryState, not ActuatorState"):
         battery.put(ActuatorState(0.0), 0.0)
     with pytest.raises(TopicError, match=r'did you mean "ATRV2/Battery"\?'):

@@ -11,7 +11,7 @@ from estimation.gyro_bias import BiasNews, GyroBias
 from estimation.heading import AbsoluteHeading, GyroHeading
 from estimation.inertial import InertialHeading, LowPass, theta_rate
 from estimation.odometer import Odometer, SignedSpeed
-from estimation.se2 import wrap_angle
+from pluto_bt.maps.geometry import wrap_angle
 
 
 def test_the_bias_is_the_mean_of_the_standstill_samples() -> None:

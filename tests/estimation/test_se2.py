@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from estimation.se2 import IDENTITY, Pose2, arc, blend, compose, inverse, motion_of, twist_of, wrap_angle
+from estimation.se2 import IDENTITY, Pose2, arc, blend, compose, inverse, motion_of, twist_of
+from pluto_bt.maps.geometry import wrap_angle
 
 metres = st.floats(-1e3, 1e3)
 angles = st.floats(-3.0, 3.0)

@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from estimation.covariance import ZERO, as_nine
-from estimation.se2 import Pose2, arc, compose, inverse, wrap_angle
+from estimation.se2 import Pose2, arc, compose, inverse
 from estimation.track import Track
+from pluto_bt.maps.geometry import wrap_angle
 
 DT_S = 0.02
 POSES = st.tuples(st.floats(-50, 50), st.floats(-50, 50), st.floats(-3, 3))

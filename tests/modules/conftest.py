@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from drivers.records import Record
-from pluto_bt.blackboard import Blackboard, Inbox
+from pluto_bt.blackboard import Blackboard, Inbox, Publisher
 from pluto_bt.blackboard.messages import Message
 from pluto_bt.maps.platform import Body, Devices, Limits, Platform
 from pluto_bt.modules.context import Context
@@ -39,6 +39,7 @@ class Rig:
         body = Body(kinematics=kinematics, outline_m=((0.5, 0.4), (-0.5, 0.4), (-0.5, -0.4), (0.5, -0.4)), track_m=0.6)  # type: ignore[arg-type]
         limits = Limits(max_speed_mps=1.0, max_turn_rate_dps=60, acceleration_mps2=0.5, deceleration_mps2=1, turn_acceleration_dps2=90)
         self.events: list[tuple[str, str, str, str]] = []
+        self._publishers: dict[str, Publisher] = {}
         self.devices = {name: FedDevice() for name in ("base", "laser", "dmu", "imu", "compass", "gps", "wrist", "marker", "speed")}
         self.context = Context(
             board=Blackboard(),
@@ -55,7 +56,9 @@ class Rig:
     def put(self, topic: str, value: Message, now_s: float = 0.0) -> None:
         """Write a topic as its writer would."""
         board = self.context.board
-        board.publisher(topic, board.topic(topic).writer).put(value, now_s)
+        if topic not in self._publishers:
+            self._publishers[topic] = board.publisher(topic, board.topic(topic).writer)
+        self._publishers[topic].put(value, now_s)
 
     def newest(self, topic: str) -> Any:
         """The newest value, or None."""

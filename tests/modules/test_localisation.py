@@ -8,8 +8,9 @@ from typing import Any
 import pytest
 
 from drivers.records import MarkerRecord
-from estimation.se2 import compose, inverse, wrap_angle
+from estimation.se2 import compose, inverse
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, Pose, ScanTiming, SpeedState
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Inertial, Laser, MarkerCamera, WheelSpeed
 from pluto_bt.maps.platform import Wrist as WristUnit
 from pluto_bt.modules.local import Local

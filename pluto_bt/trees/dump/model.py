@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.registry import is_port_name
-from pluto_bt.trees.tracked import NodeState
 
 # fill and line colours by status; "" is a tree that is not running
 COLOURS: Final = {

@@ -7,12 +7,7 @@ import itertools
 from collections.abc import Callable
 from typing import Any, Protocol
 
-
-class MissionClock(Protocol):
-    """The part of a clock that a mission needs. A clock that also has `call_at(at_s, callback)` fires timers between ticks."""
-
-    def now_s(self) -> float:
-        """Seconds of the run."""
+from pluto_bt.runtime.clock import MissionClock
 
 
 class Timer(Protocol):
@@ -37,7 +32,7 @@ class PolledTimer:
 
 
 class FrozenClock:
-    """The clock of a mission that was given none: time stands still."""
+    """The clock of a node that is in no mission: time stands still."""
 
     def now_s(self) -> float:
         """Always 0."""

@@ -72,7 +72,7 @@ class MissionFiles:
         """Read a mission file."""
         self.root = read_xml_file(path, shown, self.faults)
         if self.root is not None:
-            self._open.append(str(path.resolve()))
+            self._open.append(os.path.realpath(path))
             self._take_document(self.root, shown, path.parent)
             self._open.pop()
 
@@ -150,12 +150,12 @@ class MissionFiles:
         self._read_include(folder / path, os.path.join(os.path.dirname(shown), attribute.value), attribute)
 
     def _read_include(self, path: Path, shown: str, attribute: XmlAttribute) -> None:
-        real = str(path.resolve())
+        real = os.path.realpath(path)
         if real in self._open:
             chain = " → ".join(Path(file).name for file in [*self._open[self._open.index(real) :], real])
             self.faults.error(attribute.value_place, "include-cycle", "the file includes itself", expected="no circle", found=chain)
             return
-        if not path.is_file():
+        if not os.path.isfile(path):
             mend, what = did_you_mean(path.name, _neighbours(path)), f"there is no file {attribute.value!r}"
             self.faults.error(attribute.value_place, "no-file", what, expected="a mission file", found=shown, mend=mend)
             return
@@ -200,7 +200,7 @@ class MissionFiles:
 def _neighbours(path: Path) -> list[str]:
     try:
         return sorted(entry.name for entry in path.parent.iterdir() if entry.suffix == ".xml")
-    except OSError:
+    except (OSError, ValueError):
         return []
 
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
-from pluto_bt.trees.engine.context import Context, MissionClock
+from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan

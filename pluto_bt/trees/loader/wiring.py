@@ -57,7 +57,7 @@ def _literal(kind: Kind, given: Any) -> Callable[[], Any]:
 
 def _entry(scope: Scope, key: str, port: PortModel) -> Callable[[], Any]:
     read = reader(scope, key, ANYTHING if port.kind.raw else port.kind)
-    if port.ge is None and port.le is None and not port.choices:
+    if port.ge is None and port.le is None and not port.choices and not port.unit:
         return read
 
     def read_checked() -> Any:

@@ -1,0 +1,258 @@
+"""The tables of the guides, made from the program itself. A page holds them between `<!-- table: NAME -->` and `<!-- end -->`.
+
+`python -m tests.doc_tables` writes them anew; `test_docs.py` fails while a page differs from what is made here.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
+from pluto_bt.behaviours.reasons import REASONS, WAITING
+from pluto_bt.blackboard import TOPICS
+from pluto_bt.blackboard.codes import STATUS_ENUMS, code_name
+from pluto_bt.gateway.commands import COMMANDS
+from pluto_bt.gateway.parse import _FROM_CONTENT
+from pluto_bt.gateway.requests import ELEMENTS
+from pluto_bt.maps import fault_table
+from pluto_bt.modules.robot_file import SHIPPED, RobotFile, load_robot_file
+from pluto_bt.modules.topic_globals import fields_of
+from pluto_bt.result import EXIT_CODES, INTERRUPTED, SUPERVISION
+from pluto_bt.runtime.parameters import Parameter, describe
+from pluto_bt.skills.reasons import CHAIN_REASONS
+from pluto_bt.system import MODULES
+from pluto_bt.trees.dump.palette import ARROWS, default_text
+from pluto_bt.trees.loader.registry import NodeType, node_types
+from pluto_bt.trees.ports import PortModel
+from tests.doc_texts import RUN_REASONS, STATUS_MEANINGS
+from tests.safety_cases import CAUSES
+
+ROOT = Path(__file__).resolve().parent.parent
+PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md")
+_BLOCK = re.compile(r"(<!-- table: ([\w-]+) -->\n)(.*?)(<!-- end -->)", re.DOTALL)
+
+
+def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A Markdown table."""
+    lines = [list(heads), *(list(row) for row in rows)]
+    cells = [[cell.replace("|", "\\|").replace("\n", " ") for cell in line] for line in lines]
+    return "\n".join(["| " + " | ".join(cells[0]) + " |", "|" + "---|" * len(cells[0]), *("| " + " | ".join(row) + " |" for row in cells[1:])]) + "\n"
+
+
+# ---------------------------------------------------------------------- missions
+
+
+def _types(builtin: bool, *kinds: str) -> list[NodeType]:
+    found = [node for node in node_types().values() if node.builtin is builtin and node.kind in kinds]
+    of_others = [node for node in found if not builtin and not node.make.__module__.startswith("pluto_bt.")]  # those of other tests
+    return sorted((node for node in found if node not in of_others), key=lambda node: node.name)
+
+
+def _port(port: PortModel) -> str:
+    default = f", default {default_text(port)}" if port.default is not None else ""
+    return f"{ARROWS[port.direction]} `{port.name}` {port.form}{default}" + (f": {port.description}" if port.description else "")
+
+
+def _ports(node: NodeType) -> str:
+    """The ports; those that every motion leaf has stand in one word."""
+    common = {*MOTION_INPUTS, *MOTION_OUTPUTS}
+    is_motion = common <= set(node.ports)
+    own = [_port(port) for port in node.ports.values() if not (is_motion and port.name in common)]
+    return "<br>".join([*own, "+ *motion ports*"] if is_motion else own) or "–"
+
+
+def nodes(builtin: bool, *kinds: str) -> str:
+    """Node, ports, what it does."""
+    return table(("node", "ports", "what it does"), ((f"`{node.name}`", _ports(node), node.description) for node in _types(builtin, *kinds)))
+
+
+def motion_ports() -> str:
+    """What every motion leaf takes and gives."""
+    goto = node_types()["GoTo"]
+    rows = [goto.ports[name] for name in (*MOTION_INPUTS, *MOTION_OUTPUTS)]
+    return table(("port", "form", "default", "meaning"), ((f"{ARROWS[port.direction]} `{port.name}`", port.form,
+                 "" if port.default is None else default_text(port), port.description) for port in rows))  # fmt: skip
+
+
+def topics() -> str:
+    """Topics, and the numbers of each for scripts."""
+    rows = []
+    for topic in TOPICS:
+        prefix = topic.name.replace("/", "_").replace("-", "_")
+        names = " ".join(_folded(name for name in fields_of(topic.type) if name != "stamp_s"))
+        rows.append((f"`{topic.name}`", topic.writer, _seconds(topic.period_s, "on change"), _seconds(topic.stale_after_s, "never"), topic.doc,
+                     f"`@{prefix}` + {names}" if names else "–"))  # fmt: skip
+    return table(("topic", "writer", "every", "stale after", "meaning", "numbers for scripts"), rows)
+
+
+def _folded(names: Iterable[str]) -> list[str]:
+    """`_force_0 … 3` instead of `_force_0 _force_1 _force_2 _force_3`."""
+    last: dict[str, str] = {}  # stem → number of its last item; "" = no number
+    for name in names:
+        stem, _, number = name.rpartition("_")
+        last[stem if number.isdigit() else name] = number if number.isdigit() else ""
+    return [f"`_{stem}_0` … `{number}`" if number not in ("", "0") else f"`_{stem}{'_0' if number else ''}`" for stem, number in last.items()]
+
+
+def _seconds(value: float, none: str) -> str:
+    return f"{value:g} s" if value else none
+
+
+# ---------------------------------------------------------------------- worlds, platforms
+
+
+def faults() -> str:
+    """One row for each kind and meaning; the devices that can have it."""
+    rows: dict[tuple[str, str, str], list[str]] = {}
+    for row in fault_table.FAULTS:
+        takes = [f"[{name}]" for name in row.takes if name != "beams"]
+        rows.setdefault((row.kind, " ".join([*row.needs, *takes]), row.doc), []).append(row.device)
+    order = {kind: number for number, kind in enumerate(fault_table.KINDS)}
+    in_order = sorted(rows.items(), key=lambda row: order[row[0][0]])
+    cells = ((f"`{kind}`", needs or "–", ", ".join(devices), doc) for (kind, needs, doc), devices in in_order)
+    return table(("kind", "needs, [takes]", "devices", "what happens"), cells)
+
+
+def fault_units() -> str:
+    """What `value` means for a device."""
+    return table(("device", "`value`"), fault_table.UNITS.items())
+
+
+def parameters() -> str:
+    """Every parameter of a robot file, a table for each TOML table."""
+    groups: dict[str, list[Parameter]] = {}
+    for row in describe(RobotFile):
+        groups.setdefault(row.name.rpartition(".")[0], []).append(row)
+    parts = []
+    for group, rows in groups.items():
+        parts.append(f"\n### {f'[{group}]' if group else 'top of the file'}\n\n" + table(
+            ("parameter", "unit", "form", "default", "meaning"),
+            ((f"`{row.name.rpartition('.')[2]}`", row.unit or "–", row.kind, row.default or "must be given", row.doc) for row in rows),
+        ))  # fmt: skip
+    return "".join(parts) + "\n"
+
+
+def shipped() -> str:
+    """The four robot files side by side."""
+    robots = [load_robot_file(name) for name in SHIPPED]
+    size = ["{:.2f} × {:.2f} m".format(*(max(axis) - min(axis) for axis in zip(*robot.body.outline_m, strict=True))) for robot in robots]
+    devices = [", ".join(name for name in robot.devices.__struct_fields__ if getattr(robot.devices, name) is not None) for robot in robots]
+    return table(("", *(f"`{robot.name}`" for robot in robots)), (
+        ("turns by", *(robot.body.kinematics for robot in robots)),
+        ("length × width", *size),
+        ("top speed", *(f"{robot.limits.max_speed_mps:g} m/s" for robot in robots)),
+        ("top turn rate", *(f"{robot.limits.max_turn_rate_dps:g} °/s" for robot in robots)),
+        ("deceleration", *(f"{robot.limits.deceleration_mps2:g} m/s²" for robot in robots)),
+        ("devices", *devices),
+    ))  # fmt: skip
+
+
+# ---------------------------------------------------------------------- safety, reasons
+
+
+def stops() -> str:
+    """What stops the robot: what the parameters promise and what was measured."""
+    rows = (
+        (cause.name, cause.noticed_by, f"{cause.limit_s:.2f} s", f"{cause.measured_s:.1f} s", cause.status, cause.result, cause.clears)
+        for cause in CAUSES
+    )
+    return table(("cause", "noticed by", "at rest within", "measured", "status", "if it does not clear, the run ends", "clears"), rows)
+
+
+def reasons() -> str:
+    """The reasons of leaves."""
+    of_leaves = {word: reason for word, reason in REASONS.items() if word not in RUN_REASONS or word in WAITING}
+    rows = ((f"`{word}`", reason.meaning, f"{WAITING[word]:g} s" if word in WAITING else "–", reason.cure) for word, reason in of_leaves.items())
+    return table(("reason", "meaning", "waits", "cure"), rows)
+
+
+def chain_reasons() -> str:
+    """The reasons in the status of the links."""
+    return table(("reason", "meaning"), ((f"`{word}`", meaning) for word, meaning in CHAIN_REASONS.items()))
+
+
+EXIT_OF = {**dict.fromkeys(SUPERVISION, 3), INTERRUPTED: 130}
+
+
+def run_reasons() -> str:
+    """The reasons that end a run, beside those of the deciding leaf."""
+    rows = []
+    for word, (result, meaning, cure) in RUN_REASONS.items():
+        known = REASONS.get(word)
+        exit_code = str(EXIT_OF.get(word, EXIT_CODES[result]))
+        rows.append((f"`{word}`", result, exit_code, known.meaning if known else meaning, known.cure if known else cure))
+    return table(("reason", "result", "exit", "meaning", "cure"), rows)
+
+
+def status_codes() -> str:
+    """`element[0..3]` of the chain's status."""
+    rows = []
+    for number, kind in enumerate(STATUS_ENUMS):
+        for code in kind:
+            meaning, cure = STATUS_MEANINGS[kind.__name__, code.name]
+            rows.append((f"[{number}]", str(int(code)), code_name(code), meaning, cure))
+    return table(("element", "code", "name", "meaning", "cure"), rows)
+
+
+# ---------------------------------------------------------------------- gateway, architecture
+
+
+def requests() -> str:
+    """What a client may say."""
+    rows = []
+    for tag, kind in ELEMENTS.items():
+        names = [f"`{name}`" for name in kind.__struct_fields__ if name not in _FROM_CONTENT.get(tag, ()) and name != "id"]
+        rows.append((f"`<{tag}>`", " ".join(names) or "–", (kind.__doc__ or "").strip().split("\n")[0]))
+    return table(("element", "attributes", "meaning"), rows)
+
+
+def shell() -> str:
+    """What a person may say."""
+    return table(("command", "meaning"), ((f"`{command.usage}`", command.doc) for command in COMMANDS.values()))
+
+
+def modules() -> str:
+    """THE table of modules."""
+    rows = ((f"`{row.name}`", row.group, f"{row.period_s:g} s" if row.period_s else "–", ", ".join(row.wakes) or "–", ", ".join(row.needs) or "–",
+             "yes" if row.critical else "–", row.device or "–", f"{row.budget_ms:g} ms") for row in MODULES)  # fmt: skip
+    return table(("module", "group (thread)", "every", "woken by", "needs", "critical", "only with the device", "budget a step"), rows)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "actions": lambda: nodes(False, "Action"),
+    "conditions": lambda: nodes(False, "Condition"),
+    "controls": lambda: nodes(True, "Control"),
+    "decorators": lambda: nodes(True, "Decorator"),
+    "builtin-leaves": lambda: nodes(True, "Action", "Condition"),
+    "motion-ports": motion_ports,
+    "topics": topics,
+    "faults": faults,
+    "fault-units": fault_units,
+    "parameters": parameters,
+    "shipped": shipped,
+    "stops": stops,
+    "reasons": reasons,
+    "chain-reasons": chain_reasons,
+    "run-reasons": run_reasons,
+    "status-codes": status_codes,
+    "requests": requests,
+    "shell": shell,
+    "modules": modules,
+}
+
+
+def updated(page: str) -> str:
+    """The page with every table as it must be. Raises KeyError for a name that nobody makes."""
+    return _BLOCK.sub(lambda block: block[1] + TABLES[block[2]]() + block[4], page)
+
+
+def names_in(page: str) -> list[str]:
+    """The names of the tables of a page."""
+    return [block[2] for block in _BLOCK.finditer(page)]
+
+
+if __name__ == "__main__":
+    for path in PAGES:
+        path.write_text(updated(path.read_text(encoding="utf-8")), encoding="utf-8")
