@@ -45,13 +45,13 @@ MODULES: tuple[Module, ...] = (
            wakes=("ATRV2/Drive/Raw", "sick/timing")),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
-    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
+    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
 )
 # fmt: on
 
-INBOXES = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "wrist": ""}  # link -> the link above, which owns its inbox
+INBOXES = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": ""}  # link -> the link above, which owns its inbox
 
 
 @dataclass
@@ -67,7 +67,7 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
-    load: Callable[[str], Mission] = load_mission
+    load: Callable[..., Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
 

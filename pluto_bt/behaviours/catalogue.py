@@ -7,14 +7,21 @@ from typing import Final
 from pluto_bt.behaviours.car_goto import CarGoTo
 from pluto_bt.behaviours.conditions import BatteryAbove, BumperPressed, InsideArea, IsAt, IsStuck, PoseQualityAbove
 from pluto_bt.behaviours.goto import GoTo
+from pluto_bt.behaviours.jobs import Explore, Investigate, MoveTo, Resume, SetRectangle
 from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.look_around import LookAround, SweepWrist
 from pluto_bt.behaviours.make_turn import MakeTurn
+from pluto_bt.behaviours.paths import FindPath, FollowRay
+from pluto_bt.behaviours.phase import Phase
 from pluto_bt.behaviours.say import Say
 from pluto_bt.behaviours.stop import Release, Stop
 from pluto_bt.behaviours.topic_compare import TopicCompare, WaitFor
 from pluto_bt.behaviours.velocity import DriveVelocity, HoldHeading
 from pluto_bt.behaviours.wrist import PointWrist
 
-ACTIONS: Final[tuple[type[Leaf], ...]] = (GoTo, CarGoTo, MakeTurn, DriveVelocity, HoldHeading, Stop, Release, PointWrist, WaitFor, Say)
+ACTIONS: Final[tuple[type[Leaf], ...]] = (
+    GoTo, CarGoTo, MakeTurn, MoveTo, Explore, SetRectangle, Investigate, Resume, DriveVelocity, HoldHeading, Stop, Release, PointWrist, LookAround,
+    SweepWrist, FindPath, FollowRay, Phase, WaitFor, Say,
+)  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS)

@@ -19,6 +19,7 @@ RATE_DPS: Final = 60.0
 ACCELERATION_DPS2: Final = 120.0
 PATIENCE_S: Final = 4.0  # a wrist that does not get there keeps nobody waiting longer
 STILL_MPS, STILL_RADPS = 0.02, 0.03
+HOLD_S: Final = 1.0
 
 
 class WristTour(Leaf):
@@ -91,12 +92,25 @@ class LookAround(WristTour):
         robot = self.robot
         if robot is None:
             return self.fail("not-connected", "no robot")
+        self._hold(robot)
         raw = robot.newest("ATRV2/Drive/Raw")
         if self._next < 0 and isinstance(raw, ActuatorState) and self.now_s() - self._since_s < PATIENCE_S:
             if abs(raw.velocity[0]) > STILL_MPS or abs(raw.velocity[1]) > STILL_RADPS:
                 robot.surroundings.look(robot, self.now_s())
                 return self.wait("coming to rest")
         return self.succeed("looked around") if self.visit(robot) else self.wait("looking around")
+
+
+    def initialise(self) -> None:
+        """Nothing is held yet."""
+        super().initialise()
+        self._held_s = -math.inf
+
+    def _hold(self, robot: Robot) -> None:
+        """Command the robot to stand, again and again, so that drive does not time out."""
+        if self.now_s() - self._held_s >= HOLD_S:
+            self._held_s = self.now_s()
+            robot.command(0)
 
 
 class SweepWrist(WristTour):

@@ -12,6 +12,7 @@ from drivers.records import Record
 from pluto_bt.blackboard import Blackboard, Inbox
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
+from pluto_bt.modules.job_box import JobBox
 from pluto_bt.modules.post_box import PostBox
 from pluto_bt.runtime import Clock
 
@@ -40,6 +41,7 @@ class Context:
         say: (level, code, source, text) → a line in `events`.
         is_running: whether the module of that name is started (a stopped one shows −10).
         posts: where improved poses wait for `local`.
+        jobs: where motion orders the jobs 42 to 45 from the executive.
         order_module: (name, run) → start or stop a module.
     """
 
@@ -53,6 +55,7 @@ class Context:
     is_running: Callable[[str], bool]
     start_pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
     posts: PostBox = field(default_factory=PostBox)
+    jobs: JobBox = field(default_factory=JobBox)
     order_module: Callable[[str, bool], None] = lambda name, run: None
     joined: System | None = None
 

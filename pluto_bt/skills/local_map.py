@@ -43,6 +43,7 @@ class LocalMap:
         self.evidence: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self.covered: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
+        self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
         self._touched: Counts = np.zeros((CELLS, CELLS), dtype=np.int32)
         self._scans = 0
@@ -94,7 +95,7 @@ class LocalMap:
             self._changed(x, y, self.look_m)
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
-            mark_ground(self.low_s, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m, self.parameters.ground_step_m,
+            mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m, self.parameters.ground_step_m,
                         scan.stamp_s)  # fmt: skip
             self._changed(x, y, reach_m)
 
@@ -134,7 +135,8 @@ class LocalMap:
         shift_j = 0 if quarter <= j < CELLS - quarter else math.floor(j) - CELLS // 2
         if not (shift_i or shift_j):
             return
-        for grid, blank in ((self.evidence, 0), (self.covered, 0), (self.low_s, NEVER_S), (self._touched, 0), (self.clearance, self.far_cells)):
+        for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
+                            (self.clearance, self.far_cells)):  # fmt: skip
             _shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
         self._window = None

@@ -18,8 +18,11 @@ Bytes = NDArray[np.int8]
 Counts = NDArray[np.int32]
 Floats = NDArray[np.float32]
 
-HIT, MISS = 3, 1  # a wall outlives the drop-outs of single beams, somebody who walked on is gone after a second
+HIT, MISS = 3, 2  # a wall outlives the drop-outs of single beams, somebody who walked on is gone after a second
 MOST, LEAST = 6, -4
+LEVEL, STANDS, HOLE = 1, 2, 3  # what a beam that looks down may find
+AGAIN_S, FORGOTTEN_S = 0.4, 6.0  # what lies low has to be seen again in the same cell: who walks has gone on by then
+TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
 SAMPLE = 0.7  # cells between two samples of a beam
 
 
@@ -31,7 +34,8 @@ def mark_level(
     """Enter a level scan taken at (x, y); all lengths in cells.
 
     Beams that end nearer than `look` are hits, and two neighbouring hits less than `join` apart are one wall. What beams pass is free, and
-    nearer than `cover` it is also covered. Ranges that are not numbers or not positive say nothing.
+    nearer than `cover` it is also covered. Ranges that are not numbers or not positive say nothing; a single beam that runs on where both
+    its neighbours end has lost its echo and is believed no farther than they are.
     """
     size = evidence.shape[0]
     last_x, last_y, has_last = 0.0, 0.0, False
@@ -56,6 +60,8 @@ def mark_level(
         r = ranges[k]
         if not r > 0.0:
             continue
+        if 0 < k < ranges.shape[0] - 1:
+            r = min(r, max(ranges[k - 1], ranges[k + 1]) + join)
         c, s_ = math.cos(bearings[k]), math.sin(bearings[k])
         for m in range(int((min(r, look) - 1.0) / SAMPLE)):
             i, j = int(math.floor(x + m * SAMPLE * c)), int(math.floor(y + m * SAMPLE * s_))
@@ -70,33 +76,43 @@ def mark_level(
 
 @kernel
 def mark_ground(
-    low_s: Floats, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float, height: float, look: float,
+    low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float, height: float, look: float,
     step: float, now_s: float,
 ) -> None:  # fmt: skip
-    """Enter what a scan tilted down by `tilt` says of the ground: metres, (x, y) in cells.
+    """Enter what a scan tilted down by `tilt` says of the ground into `low_s`: metres, (x, y) in cells.
 
-    Ends more than `step` above the ground are low obstacles (or the foot of high ones); a beam that runs on more than `step` below the
-    ground has found a hole, where it went through the ground; ground that is where it should be takes old marks away.
+    Ends more than `step` above the ground are low obstacles (or the foot of high ones) if they are seen again later (`first_s`: when first); a beam that runs on more than `step` below the
+    ground has found a hole, where it went through the ground; both only where the beam before says the same. Ground that is where it
+    should be takes old marks away.
     """
     size = low_s.shape[0]
     sin, cos = math.sin(tilt), math.cos(tilt)
+    before = 0
     for k in range(ranges.shape[0]):
         r = ranges[k]
         fall = math.cos(angles[k]) * sin
-        if not (0.0 < r) or fall < 0.05:
-            continue
-        above = height - r * fall
-        if above > step and r >= look:
-            continue
-        at = r if above > -step else height / fall  # of a hole, its near edge
+        verdict, same = 0, before
+        if 0.0 < r and fall >= 0.05:
+            above = height - r * fall
+            verdict = LEVEL if abs(above) <= step else HOLE if above < 0.0 else STANDS if r < look and above < TALL_M else 0
+        before = verdict
+        if verdict == 0 or (verdict != LEVEL and verdict != same):
+            continue  # one beam alone may be dazzled, or have lost its echo
+        at = height / fall if verdict == HOLE else r  # of a hole, its near edge
         ahead, aside = at * math.cos(angles[k]) * cos, at * math.sin(angles[k])
         if ahead * ahead + aside * aside > look * look:
             continue
         px = x + (ahead * math.cos(yaw) - aside * math.sin(yaw)) / cell
         py = y + (ahead * math.sin(yaw) + aside * math.cos(yaw)) / cell
         i, j = int(math.floor(px)), int(math.floor(py))
-        if 0 <= i < size and 0 <= j < size:
-            low_s[i, j] = now_s if abs(above) > step else -1.0
+        if not (0 <= i < size and 0 <= j < size):
+            continue
+        if verdict == LEVEL:
+            low_s[i, j] = first_s[i, j] = -1.0
+        elif verdict == HOLE or AGAIN_S <= now_s - first_s[i, j] <= FORGOTTEN_S:
+            low_s[i, j] = now_s
+        elif evidence[i, j] <= 0 and (first_s[i, j] < 0.0 or now_s - first_s[i, j] > FORGOTTEN_S):
+            first_s[i, j] = now_s
 
 
 @kernel

@@ -117,12 +117,13 @@ class Motion:
     def _begin_job(self, command: ActuatorState, now_s: float, pose: Planar | None) -> ActuatorState:
         """42 to 45: zero velocity, and the order for the executive; or zero velocity and a reason."""
         self.verdict = self._job_trouble(command, pose)
-        kept, self.kept, self.moveto = self.kept, None, MovetoStatus.NONE
+        self.moveto = MovetoStatus.NONE
         if self.verdict == ALL_WELL and pose is not None:
-            job = self._resumed(kept) if command.flags == MotionCommand.RESUME else self._new_job(command, pose)
+            job = self._resumed() if command.flags == MotionCommand.RESUME else self._new_job(command, pose)
             self.verdict = self._place_trouble(job, pose)
             if self.verdict == ALL_WELL:
                 self._orders += 1
+                self.kept = None
                 self.job, self._is_ordered = job._replace(number=self._orders, rectangle=self.rectangle), True
                 self.moveto = MovetoStatus.SET if job.kind == MotionCommand.MOVETO else MovetoStatus.NONE
                 self._phase = MotionStatus.APPROACHING_OBJECT if job.kind == MotionCommand.INVESTIGATE else MotionStatus.SCANNING_FOR_PATHS
@@ -159,10 +160,10 @@ class Motion:
         radius_m = radius_m if radius_m > 0.0 else self.parameters.circle_radius_m
         return Job(0, MotionCommand(command.flags), place, speed_mps, avoid & self._avoid, radius_m, turns if turns > 0.0 else 1.0)
 
-    def _resumed(self, kept: Job | None) -> Job:
+    def _resumed(self) -> Job:
         """What 45 means: the stopped job, else explore with the rectangle and its home."""
-        if kept is not None:
-            return kept._replace(goes_on=True)
+        if self.kept is not None:
+            return self.kept._replace(goes_on=True)
         assert self.rectangle is not None  # else there was trouble
         return Job(0, MotionCommand.EXPLORE, self.rectangle.home[:2], self.parameters.speed_mps, self._avoid)
 
