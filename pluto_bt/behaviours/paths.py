@@ -6,6 +6,7 @@ import math
 from typing import Final
 
 from py_trees.common import Status
+from py_trees.ports import NoDataAvailable
 
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
@@ -24,7 +25,16 @@ NEW_POINT_M: Final = 0.6  # a goto point that moves less is not worth a new comm
 POINT_TOLERANCE_M: Final = 0.4
 NEW_HEADING_RAD: Final = math.radians(8.0)
 SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on
-GOAL: Final = {"goal": Port(tuple[float, float] | None, False, "where to; empty: the nearest ground that is not explored yet", None, unit="m")}
+GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
+
+
+def goal_of(leaf: Leaf) -> Pair | None:
+    """The goal, or None where the leaf was given none."""
+    try:
+        goal: Pair = leaf.get_input("goal")
+    except NoDataAvailable:
+        return None
+    return goal
 
 
 def is_near(around: Surroundings, goal: Pair) -> bool:
@@ -55,7 +65,7 @@ class FindPath(Leaf):
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
             return self.fail("no-pose", "it is not known where the robot is")
-        goal: Pair | None = self.get_input("goal")
+        goal = goal_of(self)
         around.openings.turn()
         if goal is not None and is_near(around, goal):
             self._set_output("near", True)
@@ -84,7 +94,7 @@ class FollowRay(MotionLeaf):
         around, now_s = robot.surroundings, self.now_s()
         if not around.look(robot, now_s) or around.way is None:
             return self.fail("no-path", "there is no path to follow: FindPath comes first")
-        self._goal: Pair | None = self.get_input("goal")
+        self._goal = goal_of(self)
         self._following = RayFollowing(around.map, around.ways.least_m, around.openings)
         self._following.begin(around.way, self._find, now_s, around.robot)
         self._point: Pair | None = None

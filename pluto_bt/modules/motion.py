@@ -54,7 +54,7 @@ class Motion:
                 return
             self._pass_down(self._skill.accept(letter.command, now_s, self._where(now_s)))
             self._order()
-        self._work_for_the_job()
+        self._work_for_the_job(now_s)
         has_it = self._sent is None or self._avoid_command() == self._sent
         self._link.tell(now_s, self._skill.status(now_s, self._avoid_status(), has_it), None if letter is None else letter.command)
 
@@ -78,7 +78,7 @@ class Motion:
         if is_ordered:
             self._jobs.put(job)
 
-    def _work_for_the_job(self) -> None:
+    def _work_for_the_job(self, now_s: float) -> None:
         """Hear how the job stands, and pass down what its tree commands. What an ended job still commands is dropped."""
         letter = None if self._job_inbox is None else self._job_inbox.take()
         job = self._skill.job
@@ -87,6 +87,8 @@ class Motion:
         state: JobState | None = self._job_state()
         if state is not None and job is not None:
             self._skill.hear(state)
+            if self._skill.verdict.reason:
+                self._pass_down(ActuatorState(now_s))  # it failed: the robot stands, whatever its tree did last
 
     def _where(self, now_s: float) -> Planar | None:
         """The pose of interface 3, None if it is missing or too old."""

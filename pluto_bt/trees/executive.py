@@ -102,8 +102,8 @@ class Executive:
         return ticked
 
     def _close(self, activity: Activity) -> None:
-        """The end of a mission or an errand brings the robot to rest; that of a job only if it ended with an error."""
-        if activity is not self.job or activity.error is not None:
+        """The end of a mission or an errand brings the robot to rest; after that of a job motion does it."""
+        if activity is not self.job:
             self._body.stop()
         if activity.error is not None:
             self._say("error", "leaf-error", activity.text)
