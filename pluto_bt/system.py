@@ -39,6 +39,7 @@ MODULES: tuple[Module, ...] = (
     Module("compass",   "pluto_bt.modules.compass:Compass",       0.1,    "io",         device="compass",                               budget_ms=1.0),
     Module("gps",       "pluto_bt.modules.gps:Gps",               0.5,    "io",         device="gps",                                   budget_ms=1.0),
     Module("wrist",     "pluto_bt.modules.wrist:Wrist",           0.05,   "io",         device="wrist", wakes=("inbox:wrist",),         budget_ms=1.0),
+    Module("arm",       "pluto_bt.modules.arm:Arm",               0.1,    "io",         device="arm",                                   budget_ms=1.0),
     Module("speed",     "pluto_bt.modules.speed:Speed",           0.1,    "io",         device="speed",                                 budget_ms=1.0),
     Module("marker",    "pluto_bt.modules.marker:Marker",         0.1,    "io",         device="marker", needs=("local",),              budget_ms=1.0),
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
@@ -51,7 +52,7 @@ MODULES: tuple[Module, ...] = (
 )
 # fmt: on
 
-INBOXES = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": ""}  # link -> the link above, which owns its inbox
+INBOXES = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": ""}  # link -> the link above, which owns its inbox
 
 
 @dataclass
@@ -89,7 +90,7 @@ class System:
         self._parts: dict[str, Part] = {}
         self.inboxes = {link: Inbox(link, self._owner_rule(above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ())}
+        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ()), *(("arm",) if options.robot.devices.arm else ())}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import Final
 
+from pluto_bt.behaviours.arm import UnfoldArm
 from pluto_bt.behaviours.car_goto import CarGoTo
 from pluto_bt.behaviours.conditions import BatteryAbove, BumperPressed, InsideArea, IsAt, IsStuck, PoseQualityAbove
 from pluto_bt.behaviours.goto import GoTo
+from pluto_bt.behaviours.investigate import CircleObject, FindObject
 from pluto_bt.behaviours.jobs import Explore, Investigate, MoveTo, Resume, SetRectangle
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.look_around import LookAround, SweepWrist
@@ -21,7 +23,7 @@ from pluto_bt.behaviours.wrist import PointWrist
 
 ACTIONS: Final[tuple[type[Leaf], ...]] = (
     GoTo, CarGoTo, MakeTurn, MoveTo, Explore, SetRectangle, Investigate, Resume, DriveVelocity, HoldHeading, Stop, Release, PointWrist, LookAround,
-    SweepWrist, FindPath, FollowRay, Phase, WaitFor, Say,
+    SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase, WaitFor, Say,
 )  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS)

@@ -62,6 +62,9 @@ class Robot(Protocol):
     def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
         """Point the laser."""
 
+    def move_arm(self, share: float) -> None:
+        """Unfold the arm: 0 = folded, 1 = unfolded."""
+
     def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
         """What a job of motion shows in `element[2..3]`; None = as it is."""
 

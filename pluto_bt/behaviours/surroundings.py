@@ -11,11 +11,13 @@ import math
 from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.messages import Pair, Pose
 from pluto_bt.maps.platform import Platform
+from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.rays import Openings
 from pluto_bt.skills.rectangle import Rectangle
+from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.ways import Way, Ways
 
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
@@ -39,6 +41,8 @@ class Surroundings:
         self.rectangle = rectangle
         self.blocked = 0
         self.way: Way | None = None
+        self.views: tuple[ScanView, ...] = ()  # the scans of the last look
+        self.object: SeenObject | None = None
         if not goes_on:
             self.map.covered[:] = 0
             self.openings = Openings(self.map)
@@ -53,7 +57,8 @@ class Surroundings:
         if self._is_empty:
             self.map.forget(self.robot)
             self._is_empty = False
-        for view in robot.scan_views():
+        self.views = tuple(robot.scan_views())
+        for view in self.views:
             if view.laser is not None and self._laser is not None:
                 self.map.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
         self.map.refresh(now_s)

@@ -65,6 +65,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic("compass/state",                     CompassState,  "compass",   0.1,   1.0,  "magnetic compass"),
     Topic("wrist/command",                     ActuatorState, "wrist",     0.0,   0.0,  "the wrist command accepted last; velocity and acceleration must both be > 0 to move"),
     Topic("wrist/state",                       ActuatorState, "wrist",     0.05,  0.5,  "pan and tilt", history=32),
+    Topic("arm/state",                         ActuatorState, "arm",       0.1,   0.5,  "the arm: position[0] = how far unfolded, 0 to 1"),
     Topic("gps/state",                         GpsState,      "gps",       1.0,   3.0,  "GPS position in the map frame"),
     Topic("car/marker",                        MarkerState,   "marker",    0.3,   5.0,  "camera markers and the gate's verdict"),
     Topic("car/speed",                         SpeedState,    "speed",     0.2,   1.0,  "wheel speed, unsigned"),

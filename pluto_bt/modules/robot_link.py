@@ -100,6 +100,10 @@ class RobotLink:
         rates, accelerations = (rate_radps, rate_radps), (acceleration_radps2, acceleration_radps2)
         self._context.inboxes["wrist"].post(SOURCE, ActuatorState(now_s, 0, (pan_rad, tilt_rad), rates, accelerations))
 
+    def move_arm(self, share: float) -> None:
+        """Post a command to the arm."""
+        self._context.inboxes["arm"].post(SOURCE, ActuatorState(self._context.clock.now_s(), 0, (share, 0.0)))
+
     def say(self, text: str) -> None:
         """A line for operators."""
         self._context.say("info", "say", SOURCE, text)
