@@ -34,7 +34,7 @@ class WristTour(Leaf):
         """(pan, tilt) in radians, one after the other."""
         raise NotImplementedError
 
-    def visit(self, robot: Robot) -> bool:
+    def go_on(self, robot: Robot) -> bool:
         """Go on with the tour; True when it is over."""
         now_s = self.now_s()
         robot.surroundings.look(robot, now_s)
@@ -55,7 +55,8 @@ class WristTour(Leaf):
     def _is_seen(self, robot: Robot, now_s: float) -> bool:
         state, scan = robot.newest("wrist/state"), robot.newest("sick/scan")
         target = self._targets[self._next]
-        is_there = isinstance(state, ActuatorState) and max(abs(state.position[i] - target[i]) for i in (0, 1)) < THERE_RAD
+        at = state.position if isinstance(state, ActuatorState) else (0.0, 0.0)  # without a wrist the laser always looks ahead
+        is_there = max(abs(at[i] - target[i]) for i in (0, 1)) < THERE_RAD
         if is_there and self._there_s == math.inf:
             self._there_s = now_s
         return (isinstance(scan, LaserScan) and scan.stamp_s >= self._there_s) or now_s - self._since_s > PATIENCE_S
@@ -63,7 +64,8 @@ class WristTour(Leaf):
     def _point(self, robot: Robot, target: Pair) -> None:
         wrist = robot.platform.devices.wrist
         if wrist is not None:
-            robot.point_wrist(*target, math.radians(min(RATE_DPS, wrist.max_rate_dps)), math.radians(min(ACCELERATION_DPS2, wrist.max_acceleration_dps2)))
+            rate_dps, acceleration_dps2 = min(RATE_DPS, wrist.max_rate_dps), min(ACCELERATION_DPS2, wrist.max_acceleration_dps2)
+            robot.point_wrist(*target, math.radians(rate_dps), math.radians(acceleration_dps2))
 
 
 class LookAround(WristTour):
@@ -93,12 +95,14 @@ class LookAround(WristTour):
         if robot is None:
             return self.fail("not-connected", "no robot")
         self._hold(robot)
+        if self._next < 0 and self._moves(robot) and self.now_s() - self._since_s < PATIENCE_S:
+            robot.surroundings.look(robot, self.now_s())
+            return self.wait("coming to rest")
+        return self.succeed("looked around") if self.go_on(robot) else self.wait("looking around")
+
+    def _moves(self, robot: Robot) -> bool:
         raw = robot.newest("ATRV2/Drive/Raw")
-        if self._next < 0 and isinstance(raw, ActuatorState) and self.now_s() - self._since_s < PATIENCE_S:
-            if abs(raw.velocity[0]) > STILL_MPS or abs(raw.velocity[1]) > STILL_RADPS:
-                robot.surroundings.look(robot, self.now_s())
-                return self.wait("coming to rest")
-        return self.succeed("looked around") if self.visit(robot) else self.wait("looking around")
+        return isinstance(raw, ActuatorState) and (abs(raw.velocity[0]) > STILL_MPS or abs(raw.velocity[1]) > STILL_RADPS)
 
 
     def initialise(self) -> None:
@@ -150,6 +154,6 @@ class SweepWrist(WristTour):
             return self.wait("no wrist") if rounds < 0 else self.succeed("no wrist")
         if self._rounds == rounds:
             return self.succeed(f"{rounds} rounds")
-        if self.visit(robot):
+        if self.go_on(robot):
             self._rounds, self._next = self._rounds + 1, -1
         return self.succeed(f"{rounds} rounds") if self._rounds == rounds else self.wait("sweeping")

@@ -16,8 +16,8 @@ from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
 from pluto_bt.blackboard.messages import FVectorState, Pair
 from pluto_bt.skills import ray_following as ray
-from pluto_bt.skills.rays import is_open
 from pluto_bt.skills.ray_following import RayFollowing
+from pluto_bt.skills.rays import is_open
 from pluto_bt.skills.ways import Way
 
 SIDES: Final = ("none", "left", "right", "both")

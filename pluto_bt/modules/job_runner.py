@@ -63,12 +63,12 @@ class JobRunner:
     def _load(self, job: Job) -> Mission:
         """The tree of a job with its ports."""
         avoid = code_name(Avoidance(job.avoid))
-        ports: dict[str, Any] = {"avoid": avoid, "max_speed_mps": job.speed_mps}
-        ports |= {
+        own: dict[MotionCommand, dict[str, Any]] = {
             MotionCommand.MOVETO: {"goal": job.place, "tolerance_m": self._robot.surroundings.parameters.tolerance_m},
             MotionCommand.EXPLORE: {"home": job.place},
             MotionCommand.INVESTIGATE: {"radius_m": job.radius_m, "turns": job.turns},
-        }[job.kind]
+        }
+        ports = {"avoid": avoid, "max_speed_mps": job.speed_mps, **own[job.kind]}
         path = resources.files("pluto_bt.trees") / "library" / f"{job.tree}.xml"
         return self._context.system.options.load(str(path), ports={name: text_of(value) for name, value in ports.items()})
 

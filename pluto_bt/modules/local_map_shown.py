@@ -40,4 +40,5 @@ def shown(around: Surroundings, now_s: float) -> LocalMapState:
         return LocalMapState(now_s, cell_m=map.cell_m)
     cut = cells[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     x_m, y_m = (int(rows[0]) + map.i0) * map.cell_m, (int(columns[0]) + map.j0) * map.cell_m
-    return LocalMapState(now_s, x_m, y_m, map.cell_m, *cut.shape, cut.tobytes(), float(np.count_nonzero(is_covered)) * map.cell_m**2)
+    covered_m2 = float(np.count_nonzero(is_covered)) * map.cell_m**2
+    return LocalMapState(now_s, x_m, y_m, map.cell_m, cut.shape[0], cut.shape[1], cut.tobytes(), covered_m2)

@@ -53,7 +53,8 @@ class SeenObject:
 def _is_backed(ranges_m: Array) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
     """Which beams one of their neighbours agrees with: a single one may be dazzled."""
     is_same = np.abs(np.diff(ranges_m)) < BACKED_M
-    return (ranges_m > 0.0) & (np.append(is_same, False) | np.append(False, is_same))
+    backed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = np.append(is_same, False) | np.append(False, is_same)
+    return backed & (ranges_m > 0.0)
 
 
 def circle(robot: Planar, thing: Thing, radius_m: float, speed_mps: float, side: float) -> Twist:

@@ -10,12 +10,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, clearances, mark_ground, mark_level
 from pluto_bt.skills.motion_parameters import MotionParameters
-from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.outline import Array, Planar
 
+Indices = NDArray[np.intp]
 CELLS = 640  # of one side
 LEVEL_RAD = math.radians(0.5)
 NEVER_S = -1.0
@@ -74,6 +76,17 @@ class LocalMap:
         """Distance from a point to the nearest thing that stands, at most `wide_half_width_m`."""
         return float(self.clearance[self.cell(x_m, y_m)]) * self.cell_m
 
+    def cells(self, points: Array) -> tuple[Indices, Indices]:
+        """The cells of points (n, 2), as indices of a grid; the nearest one of the edge for points outside."""
+        i = np.floor(points[:, 0] / self.cell_m).astype(np.intp) - self.i0
+        j = np.floor(points[:, 1] / self.cell_m).astype(np.intp) - self.j0
+        return np.clip(i, 0, CELLS - 1), np.clip(j, 0, CELLS - 1)
+
+    def clearances_m(self, points: Array) -> Array:
+        """`clearance_m` of points (n, 2)."""
+        free: Array = self.clearance[self.cells(points)].astype(np.float64)
+        return free * self.cell_m
+
     # ------------------------------------------------------------------ seeing
 
     def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float) -> None:
@@ -84,7 +97,7 @@ class LocalMap:
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
         """
         self._follow(laser)
-        angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
+        angles: Array = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m), dtype=np.float64)
         x, y = self.place(laser[0], laser[1])
         cell = self.cell_m
         if abs(tilt_rad) < LEVEL_RAD:
@@ -95,8 +108,8 @@ class LocalMap:
             self._changed(x, y, self.look_m)
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
-            mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m, self.parameters.ground_step_m,
-                        scan.stamp_s)  # fmt: skip
+            mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
+                        self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
             self._changed(x, y, reach_m)
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:

@@ -51,7 +51,7 @@ def mark_level(
             steps = int(gap / SAMPLE) + 1 if gap < join else 1
         for s in range(1, steps + 1):
             share = 0.0 if steps == 1 else 1.0 - s / steps
-            i, j = int(math.floor(hit_x + share * (last_x - hit_x))), int(math.floor(hit_y + share * (last_y - hit_y)))
+            i, j = math.floor(hit_x + share * (last_x - hit_x)), math.floor(hit_y + share * (last_y - hit_y))
             if 0 <= i < size and 0 <= j < size and touched[i, j] != number:
                 touched[i, j] = number
                 evidence[i, j] = min(MOST, evidence[i, j] + HIT)
@@ -64,7 +64,7 @@ def mark_level(
             r = min(r, max(ranges[k - 1], ranges[k + 1]) + join)
         c, s_ = math.cos(bearings[k]), math.sin(bearings[k])
         for m in range(int((min(r, look) - 1.0) / SAMPLE)):
-            i, j = int(math.floor(x + m * SAMPLE * c)), int(math.floor(y + m * SAMPLE * s_))
+            i, j = math.floor(x + m * SAMPLE * c), math.floor(y + m * SAMPLE * s_)
             if not (0 <= i < size and 0 <= j < size):
                 break
             if m * SAMPLE < cover:
@@ -76,14 +76,14 @@ def mark_level(
 
 @kernel
 def mark_ground(
-    low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float, height: float, look: float,
-    step: float, now_s: float,
+    low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float,
+    height: float, look: float, step: float, now_s: float,
 ) -> None:  # fmt: skip
     """Enter what a scan tilted down by `tilt` says of the ground into `low_s`: metres, (x, y) in cells.
 
-    Ends more than `step` above the ground are low obstacles (or the foot of high ones) if they are seen again later (`first_s`: when first); a beam that runs on more than `step` below the
-    ground has found a hole, where it went through the ground; both only where the beam before says the same. Ground that is where it
-    should be takes old marks away.
+    Ends more than `step` above the ground are low obstacles, once they are seen again later (`first_s` = when first); a beam that runs on
+    more than `step` below the ground has found a hole, where it went through the ground; both only where the beam before says the same.
+    Ground that is where it should be takes old marks away.
     """
     size = low_s.shape[0]
     sin, cos = math.sin(tilt), math.cos(tilt)
@@ -92,7 +92,7 @@ def mark_ground(
         r = ranges[k]
         fall = math.cos(angles[k]) * sin
         verdict, same = 0, before
-        if 0.0 < r and fall >= 0.05:
+        if r > 0.0 and fall >= 0.05:
             above = height - r * fall
             verdict = LEVEL if abs(above) <= step else HOLE if above < 0.0 else STANDS if r < look and above < TALL_M else 0
         before = verdict
@@ -104,7 +104,7 @@ def mark_ground(
             continue
         px = x + (ahead * math.cos(yaw) - aside * math.sin(yaw)) / cell
         py = y + (ahead * math.sin(yaw) + aside * math.cos(yaw)) / cell
-        i, j = int(math.floor(px)), int(math.floor(py))
+        i, j = math.floor(px), math.floor(py)
         if not (0 <= i < size and 0 <= j < size):
             continue
         if verdict == LEVEL:

@@ -98,9 +98,7 @@ class RayFollowing:
         return not len(stretch) or bool((self._clearances(stretch) > 0.8 * self._least_m).all())
 
     def _clearances(self, points: Array) -> Array:
-        i, j = (np.floor(points / self._map.cell_m).astype(np.intp) - (self._map.i0, self._map.j0)).T
-        size = len(self._map.clearance)
-        return self._map.clearance[np.clip(i, 0, size - 1), np.clip(j, 0, size - 1)].astype(np.float64) * self._map.cell_m
+        return self._map.clearances_m(points)
 
     def _point_ahead(self, robot: Planar, most_m: float) -> tuple[float, float]:
         """The farthest point of the way within `most_m` that can be driven to straight without leaving the room that the way has."""
@@ -125,6 +123,4 @@ class RayFollowing:
         """True if all of the way has been seen: then openings do not matter."""
         if not self._way.leads_there:
             return False
-        i, j = (np.floor(self._way.points / self._map.cell_m).astype(np.intp) - (self._map.i0, self._map.j0)).T
-        size = len(self._map.evidence)
-        return bool((self._map.evidence[np.clip(i, 0, size - 1), np.clip(j, 0, size - 1)] < 0).all())
+        return bool((self._map.evidence[self._map.cells(self._way.points)] < 0).all())

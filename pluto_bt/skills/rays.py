@@ -7,7 +7,7 @@ from collections import deque
 
 import numpy as np
 
-from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.outline import Array, Planar
 
 OPENING_LOOK_M = 15.0  # how deep sides are looked into
@@ -19,9 +19,7 @@ SAME_OPENING_HALF_WIDTHS = 4.0  # an opening so near to one that was told before
 def clearances_between(map: LocalMap, a: tuple[float, float], b: tuple[float, float]) -> Array:
     """Clearance in metres at each cell of the straight line from a to b (metres, dead reckoning)."""
     count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / map.cell_m) + 1)
-    i = np.floor(np.linspace(a[0], b[0], count) / map.cell_m).astype(np.intp) - map.i0
-    j = np.floor(np.linspace(a[1], b[1], count) / map.cell_m).astype(np.intp) - map.j0
-    return map.clearance[np.clip(i, 0, CELLS - 1), np.clip(j, 0, CELLS - 1)].astype(np.float64) * map.cell_m
+    return map.clearances_m(np.linspace(a, b, count))
 
 
 def is_open(map: LocalMap, a: tuple[float, float], b: tuple[float, float], half_width_m: float, from_m: float = 0.0) -> bool:

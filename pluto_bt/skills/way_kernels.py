@@ -25,7 +25,7 @@ def inside_m(i: int, j: int, rectangle: Array) -> float:
     """How many cells a cell lies inside the nearest side of the rectangle."""
     dx, dy = i + 0.5 - rectangle[HOME_X], j + 0.5 - rectangle[HOME_Y]
     x, y = rectangle[COS] * dx + rectangle[SIN] * dy, rectangle[COS] * dy - rectangle[SIN] * dx
-    return min(min(x, rectangle[HEIGHT] - x), rectangle[BASE] - abs(y))
+    return float(min(min(x, rectangle[HEIGHT] - x), rectangle[BASE] - abs(y)))
 
 
 @kernel
@@ -104,7 +104,7 @@ def search(
     count = push(keys, places, 0, 0.0, begin)
     while count > 0:
         count = pop(keys, places, count)
-        at = places[count]
+        at = int(places[count])
         i, j = at // size, at % size
         rest = GREED * max(0.0, math.hypot(goal[0] - i, goal[1] - j) - goal_reach) if goal_reach >= 0.0 else 0.0
         if keys[count] > cost[at] + rest + 0.01:

@@ -70,19 +70,20 @@ class Ways:
     def _search(self, robot: Planar, goal: tuple[float, float], reach_cells: float, rectangle: Rectangle | None) -> Array | None:
         map, p = self.map, self.map.parameters
         least, half = self.least_m / map.cell_m, max(p.path_half_width_m, self.least_m + 0.05) / map.cell_m
+        wide, relaxed = max(map.far_cells, half), RELAXED_M / map.cell_m
         end = search(
-            map.evidence, map.covered, map.clearance, map.cell(robot[0], robot[1]), map.cell(*goal), reach_cells, self._in_cells(rectangle), least, half,
-            max(map.far_cells, half), RELAXED_M / map.cell_m, self._cost, self._came, self._keys, self._places,
+            map.evidence, map.covered, map.clearance, map.cell(robot[0], robot[1]), map.cell(*goal), reach_cells, self._in_cells(rectangle),
+            least, half, wide, relaxed, self._cost, self._came, self._keys, self._places,
         )  # fmt: skip
         return None if end < 0 else self._traced(end)
 
     def _in_cells(self, rectangle: Rectangle | None) -> Array:
         if rectangle is None:
             return np.zeros(7)
-        cell = self.map.cell_m
         x, y = self.map.place(rectangle.home[0], rectangle.home[1])
         theta = rectangle.home[2]
-        return np.array([x, y, math.cos(theta), math.sin(theta), rectangle.base_m / cell, rectangle.height_m / cell, self.map.parameters.edge_m / cell])
+        sizes = np.array([rectangle.base_m, rectangle.height_m, self.map.parameters.edge_m]) / self.map.cell_m
+        return np.array([x, y, math.cos(theta), math.sin(theta), *sizes])
 
     def _traced(self, end: int) -> Array:
         places = [end]
