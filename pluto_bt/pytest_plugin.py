@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import pytest
 
@@ -19,6 +19,3 @@ def scenario(request: pytest.FixtureRequest) -> Play:
     from pluto_bt.scenario import Play
 
     return Play(request.path.parent)
-
-
-__all__: list[Any] = ["scenario"]

@@ -8,10 +8,9 @@ from collections.abc import Callable, Mapping
 from pluto_bt.maps.world import FaultAction
 from sim.channel import Channel
 from sim.motors import Motors
-from sim.simtime import NS, SimTime, ticks_up
+from sim.simtime import NEVER_NS, NS, SimTime, ticks_up
 from sim.wrist import WristDevice
 
-NEVER_NS = 2**62
 FATAL_S = 20.0  # how long a laser takes to reboot, if the script does not say (sick_lms200 sheet, §10)
 DEFAULT_SLIP = 1.0
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 
 from pluto_bt.maps.platform import Limits
-from sim.simtime import NS, SimTime, ticks_up
+from sim.simtime import NEVER_NS, NS, SimTime, ticks_up
 
 DEAD_MAN_S = 0.3  # DESIGN.md, section 3: the base stops by itself without a command for this long
 
 Command = tuple[float, float]  # speed m/s, turn rate rad/s
 STOP: Command = (0.0, 0.0)
-NEVER_NS = 2**62
 
 
 class Motors:
@@ -19,7 +19,7 @@ class Motors:
 
     def __init__(self, limits: Limits, time: SimTime) -> None:
         self._max_speed_mps = limits.max_speed_mps
-        self._max_turn_rate_radps = limits.max_turn_rate_dps * 0.017453292519943295  # a platform file is typed by people, in degrees
+        self._max_turn_rate_radps = math.radians(limits.max_turn_rate_dps)
         self._latency_ns = round(limits.motor_latency_s * NS)
         self._dead_man_ns = round(DEAD_MAN_S * NS)
         self._time = time

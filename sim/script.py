@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from pluto_bt.maps.world import Action, At, When, World
 from sim.regions import Regions
-from sim.simtime import NS, ticks_up
-
-NEVER_NS = 2**62
+from sim.simtime import NEVER_NS, NS, ticks_up
 
 
 class Script:

@@ -5,6 +5,7 @@ from __future__ import annotations
 NS = 1_000_000_000
 TICK_NS = 10_000_000
 TICK_S = TICK_NS / NS
+NEVER_NS = 2**62
 
 
 def ticks_up(time_ns: int) -> int:

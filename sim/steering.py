@@ -16,8 +16,7 @@ class SteeringServo:
     """
 
     def __init__(self, body: Body, steering: Steering | None, noise: Noise, ideal: bool) -> None:
-        radius_m = body.min_turn_radius_m or 2.0 * body.wheel_base_m
-        self.curvature_per_percent = 1.0 / (radius_m * body.min_turn_radius_percent)
+        self.curvature_per_percent = 1.0 / (body.min_turn_radius_m * body.min_turn_radius_percent)
         self.rate_percent_per_s = steering.rate_percent_per_s if steering else Steering().rate_percent_per_s
         self._spread = 0.0 if ideal or steering is None else steering.noise_percent / 100.0
         self._noise = noise

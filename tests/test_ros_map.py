@@ -162,7 +162,7 @@ BAD_IMAGES = {
     "beyond white": (b"P2 1 1 9 10", "has pixels beyond its white value"),
     "negative": (b"P2 1 1 9 -1", "has a pixel that is no whole number"),
     "long numbers": (b"P2 1 1 9 " + b"9" * 100, "has a pixel that is no whole number"),
-    "cut off png": (png(np.arange(10000, dtype=np.uint8).reshape(100, 100))[:-60], "is broken"),
+    "cut off png": (png(np.arange(10000, dtype=np.uint8).reshape(100, 100))[:-60], "is cut off"),
     "damaged png": (png(PIXELS).replace(b"IDAT", b"IDAX"), "is "),
     "png head only": (png(PIXELS)[:30], "is "),
     "gif": (b"GIF89a" + b"\0" * 50, "is no image that can be read"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from pluto_bt.blackboard import TOPICS
+from pluto_bt.blackboard.topics import LATER_WRITERS
 from pluto_bt.modules.topic_globals import TopicGlobals, fields_of
 from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.source import PlutoError
@@ -20,7 +21,8 @@ def test_names_are_unique() -> None:
 
 
 def test_each_topic_is_written_by_a_module() -> None:
-    assert [topic.name for topic in TOPICS if topic.writer not in MODULE_NAMES] == []
+    assert [topic.name for topic in TOPICS if topic.writer not in (*MODULE_NAMES, *LATER_WRITERS)] == []
+    assert not set(LATER_WRITERS) & set(MODULE_NAMES), "a module that has come is no later writer"
 
 
 def test_each_topic_says_what_it_is_and_its_times_fit_together() -> None:

@@ -9,7 +9,7 @@ from py_trees.common import Status
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_of
-from pluto_bt.blackboard.codes import CommandType, GotoStatus
+from pluto_bt.blackboard.codes import CommandType, GotoStatus, LinkStatus
 
 
 class GoTo(MotionLeaf):
@@ -37,7 +37,7 @@ class GoTo(MotionLeaf):
         if status is not None and status.element[1] == GotoStatus.REACHED:
             return self.succeed(self._to_go(robot))
         if status is not None and status.element[1] == GotoStatus.STUCK:
-            return self.fail("bumper" if status.element[0] in (1, 2) else "stuck", status.text)
+            return self.fail("bumper" if status.element[0] in (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER) else "stuck", status.text)
         trouble = self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble

@@ -15,9 +15,10 @@ from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING, sentence
 from pluto_bt.behaviours.robot import Robot, Ticket
+from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import FVectorState, Pair
 
-AVOIDANCE: Final = {"none": 0, "sonar": 1, "laser": 2, "both": 3}  # A of cmdFlags = 10*A + T
+AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
 PAUSE_S: Final = 0.5  # a longer gap between two ticks: the mission was paused
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
@@ -94,7 +95,7 @@ class MotionLeaf(Leaf):
     ) -> None:
         """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
         devices = robot.platform.devices
-        has = (1 if devices.sonar is not None else 0) | (2 if devices.laser is not None else 0)
+        has = (Avoidance.SONAR if devices.sonar is not None else 0) | (Avoidance.LASER if devices.laser is not None else 0)
         flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
         self._post_flags(robot, flags, position, velocity, tolerance_m, force)
 
@@ -148,10 +149,10 @@ class MotionLeaf(Leaf):
 def _waiting_word(status: FVectorState) -> str:
     """The word for which the chain holds the robot back, if it is one that a leaf waits for; "" else."""
     code = status.element[0]
-    if -10 in status.element:
+    if LinkStatus.STOPPED_THREAD in status.element:
         return "chain-stopped"
-    if code in (1, 2):
+    if code in (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER):
         return "bumper"
-    if code == 7:
+    if code == LinkStatus.LASER_FATAL:
         return "laser-fatal"
     return status.reason if status.reason in WAITING else ""

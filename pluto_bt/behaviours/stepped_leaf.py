@@ -13,6 +13,7 @@ from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, MarkerState, SpeedState
 from pluto_bt.skills.car_goto import STEP_S
 from pluto_bt.skills.car_steering import turn_rate
+from pluto_bt.skills.limits import clamp
 
 GYRO_WAIT_S: Final = 90.0  # the bias takes 1000 samples, 20 s at 50 Hz, and starts again when the car is moved
 MARKER_WAIT_S: Final = 5.0
@@ -65,6 +66,8 @@ class SteppedLeaf(MotionLeaf):
             gyro = robot.newest("dmu/state")
             if not isinstance(gyro, ImuState) or not gyro.bias_known:
                 return "waiting for the gyro's bias", GYRO_WAIT_S
+            if robot.is_stale("dmu/state"):
+                return "waiting for the gyro", POSE_WAIT_S
         if self.NEEDS_MARKER and devices.marker is not None:
             marker = robot.newest("car/marker")
             if not isinstance(marker, MarkerState) or marker.accepted_count == 0:
@@ -88,7 +91,7 @@ class SteppedLeaf(MotionLeaf):
     def turn_in_place(self, robot: Robot, rate_radps: float) -> None:
         """Turn without driving, counter-clockwise positive."""
         limit = math.radians(robot.platform.limits.max_turn_rate_dps)
-        self.post(robot, CommandType.VELOCITY, velocity=(0.0, max(-limit, min(limit, rate_radps))))
+        self.post(robot, CommandType.VELOCITY, velocity=(0.0, clamp(rate_radps, limit)))
 
 
 def speed_of(robot: Robot) -> float:

@@ -12,6 +12,7 @@ from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.skills.limits import clamp
 
 REFRESH_S: Final = 1.0
 
@@ -83,7 +84,7 @@ class DriveVelocity(RefreshedLeaf):
         limit, turn_limit = self.max_speed_mps(robot), math.radians(robot.platform.limits.max_turn_rate_dps)
         share = limit / abs(speed) if abs(speed) > limit else 1.0
         keeps_curvature = robot.platform.body.kinematics == "ackermann"
-        turn = max(-turn_limit, min(turn_limit, turn * share if keeps_curvature else turn))
+        turn = clamp(turn * share if keeps_curvature else turn, turn_limit)
         self.post(robot, CommandType.VELOCITY, velocity=(speed * share, turn))
 
 
@@ -100,6 +101,5 @@ class HoldHeading(RefreshedLeaf):
 
     def send(self, robot: Robot) -> None:
         """Regulator mode: position[1] is the angle, velocity[0] the speed."""
-        limit = self.max_speed_mps(robot)
-        speed = max(-limit, min(limit, float(self.get_input("speed_mps"))))
+        speed = clamp(float(self.get_input("speed_mps")), self.max_speed_mps(robot))
         self.post(robot, CommandType.REGULATOR, (0.0, math.radians(float(self.get_input("heading_deg")))), (speed, 0.0))

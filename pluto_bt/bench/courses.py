@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,11 +15,12 @@ from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import OccupancyGrid, World
 
 CORNERS = 16  # of the disc that stands for the outline turned any way
-MARGIN_M = 0.2  # beside the robot on a straight way …
+MARGIN_M = 0.15  # beside the robot on a straight way …
+STEP_M = 0.05
 WIDE_M = 0.4  # … and on a way around something
 SHORTEST_M, LONGEST_M = 1.5, 15.0
 DETOURS_M = (0.6, 0.9, 1.2, 1.6, 2.0)  # how far beside the straight line a way around may lead
-STARTS, GOALS, POINTS = 60, 60, 400  # tries before a world counts as too narrow
+STARTS, GOALS, POINTS = 40, 60, 400  # tries before a world counts as too narrow
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +81,7 @@ class Surveyor:
                 x, y = near[0] + way_m * math.cos(bearing), near[1] + way_m * math.sin(bearing)
             if not (x_min < x < x_max and y_min < y < y_max and _is_known(self._grid, x, y)):
                 continue
-            if self._scene.clearance(transform_points((x, y, 0.0), self._disc)).distance_m > MARGIN_M:
+            if self._has_room(x, y, MARGIN_M):
                 return round(x, 3), round(y, 3)
         return None
 
@@ -100,17 +102,21 @@ class Surveyor:
         for detour_m in DETOURS_M:
             for share in (0.3, 0.5, 0.7):
                 x, y = a[0] + share * (b[0] - a[0]) - side * detour_m * dy, a[1] + share * (b[1] - a[1]) + side * detour_m * dx
-                if self._is_free((a, (x, y), b), WIDE_M):
+                if self._has_room(x, y, WIDE_M) and self._is_free((a, (x, y), b), WIDE_M):
                     return math.dist(a, (x, y)) + math.dist((x, y), b)
         return math.inf
+
+    def _has_room(self, x_m: float, y_m: float, margin_m: float) -> bool:
+        """Whether the robot can turn on the spot there."""
+        return self._scene.clearance(transform_points((x_m, y_m, 0.0), self._disc)).distance_m > margin_m
 
     def _is_free(self, points: tuple[Point, ...], margin_m: float) -> bool:
         """Whether the robot can drive from point to point, turning on the spot at each."""
         poses: list[Pose] = []
-        for (x0, y0), (x1, y1) in zip(points, points[1:], strict=False):
+        for (x0, y0), (x1, y1) in pairwise(points):
             bearing = math.atan2(y1 - y0, x1 - x0)
             poses += [(x0, y0, bearing), (x1, y1, bearing)]
-        return path_is_clear(self._scene, self._outline, poses, margin_m) is None
+        return path_is_clear(self._scene, self._outline, poses, margin_m, STEP_M) is None
 
 
 def _is_known(grid: OccupancyGrid | None, x_m: float, y_m: float) -> bool:

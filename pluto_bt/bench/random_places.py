@@ -35,7 +35,8 @@ def street(rng: Rng, people: int = 0) -> World:
         _wall("north", [(x, width_m + float(rng.uniform(0.0, 0.8))) for x in corners]),
         _wall("south", [(x, -float(rng.uniform(0.0, 0.8))) for x in corners]),
     ]
-    shapes += [_box(rng, f"car{i}", 4.0 + 6.5 * i + rng.uniform(-1.0, 1.0), 1.3, 1.8, 4.2, rng.normal(0.0, 0.04)) for i in range(6) if rng.random() < 0.7]
+    parked = (i for i in range(6) if rng.random() < 0.7)
+    shapes += [_box(rng, f"car{i}", 4.0 + 6.5 * i + rng.uniform(-1.0, 1.0), 1.3, 1.8, 4.2, rng.normal(0.0, 0.04)) for i in parked]
     shapes += [_post(f"lamp{i}", 3.0 + 7.0 * i, width_m - 1.2, 0.08) for i in range(6)]
     shapes += [_post(f"bin{i}", rng.uniform(3.0, 37.0), rng.uniform(3.5, width_m - 3.0), 0.3) for i in range(4)]
     return World("street", shapes=tuple(shapes), actors=_people(rng, people, length_m, width_m))

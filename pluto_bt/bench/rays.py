@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
-import os
 from collections.abc import Callable
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pluto_bt.bench.baseline import load_baseline
 from pluto_bt.bench.row import BenchRow, best_pair_us, best_us
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Actor, OccupancyGrid, Shape, World
@@ -27,24 +25,11 @@ OUTLINE = np.array([(0.5, 0.35), (-0.5, 0.35), (-0.5, -0.35), (0.5, -0.35), (0.6
 
 def run() -> list[BenchRow]:
     """All rows of this benchmark."""
-    baselines = load_baselines()
+    baselines = load_baseline("ray_baselines")
     rows = grid_rows(baselines) + segment_rows(baselines) if baselines else [
         BenchRow("ray baselines", math.nan, "", note="shared/bench/ray_baselines.py is not there: no ratios; PLUTO_SHARED names the folder `shared`")
     ]  # fmt: skip
     return rows + typical_rows()
-
-
-def load_baselines() -> Any:
-    """The module `ray_baselines` of the shared yardsticks; None where it is absent."""
-    root = Path(__file__).resolve().parents[2]
-    shared = Path(os.environ.get("PLUTO_SHARED") or root.parent / "shared")
-    file = shared / "bench" / "ray_baselines.py"
-    spec = importlib.util.spec_from_file_location("ray_baselines", file) if file.is_file() else None
-    if spec is None or spec.loader is None:
-        return None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def grid_rows(baselines: Any) -> list[BenchRow]:

@@ -27,7 +27,8 @@ def run() -> list[BenchRow]:
     for part in sorted(best.system.parts, key=lambda part: -part.total_ns):
         per_step_us = part.total_ns / max(part.steps, 1) / 1e3
         share = part.total_ns / 1e9 / result.wall_time_s
-        rows.append(BenchRow(f"  {part.module.name}", 100 * share, "% of the time", "", f"{per_step_us:.1f} µs a step, {part.steps} steps"))
+        used = f"{per_step_us:.1f} µs a step, {part.steps} steps; worst {part.worst_ns / 1e6:.1f} of {part.module.budget_ms:g} ms"
+        rows.append(BenchRow(f"  {part.module.name}", 100 * share, "% of the time", "", used))
     accounted = sum(part.total_ns for part in best.system.parts) / 1e9
     rows.append(BenchRow("  scheduler and rest", 100 * (1 - accounted / result.wall_time_s), "% of the time", "", ""))
     return rows

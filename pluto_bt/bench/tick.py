@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
-import os
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from py_trees.common import Status
 from py_trees.ports import BehaviourWithPorts
 
 from pluto_bt.behaviours.ports import Port
+from pluto_bt.bench.baseline import load_baseline
 from pluto_bt.bench.row import BenchRow, best_pair_us, best_us
 from pluto_bt.trees import Mission, load_mission
 
@@ -34,20 +32,8 @@ class Positive(BehaviourWithPorts, tag="BenchPositive"):
 
 def run() -> list[BenchRow]:
     """One row a tree size: our cost per visited node, and how many times cheaper that is."""
-    baseline = load_baseline()
+    baseline = load_baseline("tick_baseline")
     return [_row(rows, baseline) for rows in ROWS]
-
-
-def load_baseline() -> Any:
-    """The module `tick_baseline` of the shared yardsticks; None where it is absent."""
-    shared = Path(os.environ.get("PLUTO_SHARED") or Path(__file__).resolve().parents[2].parent / "shared")
-    file = shared / "bench" / "tick_baseline.py"
-    spec = importlib.util.spec_from_file_location("tick_baseline", file) if file.is_file() else None
-    if spec is None or spec.loader is None:
-        return None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def wide_mission(rows: int) -> Mission:

@@ -129,6 +129,21 @@ class GpsState(Message, frozen=True, gc=False):
     quality: int = 0
 
 
+class WeatherState(Message, frozen=True, gc=False):
+    """Air around the robot; the wind's direction is where it comes from, in the map frame."""
+
+    temperature_c: float = 0.0
+    humidity_percent: float = 0.0
+    wind_mps: float = 0.0
+    wind_from_rad: float = 0.0
+
+
+class GasState(Message, frozen=True, gc=False):
+    """Concentrations, in parts per million, in the order of the sensor's channels."""
+
+    concentrations_ppm: tuple[float, ...] = ()
+
+
 class MarkerState(Message, frozen=True, gc=False):
     """A position from a camera marker, in the map frame, and what the gate said of it ("" = accepted)."""
 

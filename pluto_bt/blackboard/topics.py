@@ -16,6 +16,7 @@ from pluto_bt.blackboard.messages import (
     Event,
     Flag,
     FVectorState,
+    GasState,
     GpsState,
     ImuState,
     JobState,
@@ -31,6 +32,7 @@ from pluto_bt.blackboard.messages import (
     SonarState,
     SpeedState,
     TreeState,
+    WeatherState,
     WorldState,
 )
 
@@ -47,6 +49,8 @@ class Topic:
     doc: str
     history: int = 1
 
+
+LATER_WRITERS = ("weather", "gas", "pose", "slam")  # the sources name their topics; the modules come later, and until then nobody writes
 
 # fmt: off
 TOPICS: tuple[Topic, ...] = (
@@ -67,6 +71,10 @@ TOPICS: tuple[Topic, ...] = (
     Topic("wrist/state",                       ActuatorState, "wrist",     0.05,  0.5,  "pan and tilt", history=32),
     Topic("arm/state",                         ActuatorState, "arm",       0.1,   0.5,  "the arm: position[0] = how far unfolded, 0 to 1"),
     Topic("gps/state",                         GpsState,      "gps",       1.0,   3.0,  "GPS position in the map frame"),
+    Topic("weather/state",                     WeatherState,  "weather",   1.0,   10.0, "weather sensor"),
+    Topic("gas/state",                         GasState,      "gas",       1.0,   10.0, "gas sensor"),
+    Topic("pose/status",                       FVectorState,  "pose",      0.2,   1.0,  "pose module: element[0] = 1 while it runs, [1] = points of the wall it found; data = gamma, rho, covariance"),
+    Topic("slam/status",                       FVectorState,  "slam",      0.2,   1.0,  "slam module: element[0] = 1 while it runs, [1] = -1 while it saves the map"),
     Topic("car/marker",                        MarkerState,   "marker",    0.3,   5.0,  "camera markers and the gate's verdict"),
     Topic("car/speed",                         SpeedState,    "speed",     0.2,   1.0,  "wheel speed, unsigned"),
     Topic("Localization/Dead-Reckoning",       Pose,          "local",     0.02,  0.2,  "interface 0: dead reckoning since the start, never jumps", history=64),

@@ -12,7 +12,9 @@ BENCHES = {
     "rays": "laser scans against the plain versions",
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
     "tick": "a tick of the tree against stock py_trees",
+    "patrols": "patrols over random courses in places nobody tuned to",
     "repeat": "runs with one seed: equal traces",
+    "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",
     "memory": "memory of an hour's simulated run",
 }

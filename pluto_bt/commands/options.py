@@ -20,9 +20,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Raises InputError, after the usage."""
-        if sys.stderr is not None:
-            self.print_usage(sys.stderr)
-        fail(Place(self.prog), "bad-usage", message, mend=self._nearest(message))
+        self.print_usage(sys.stderr)
+        fail(Place(self.prog), "bad-usage", message, mend=self._nearest(message) or f"`{self.prog} --help` tells more")
 
     def _nearest(self, message: str) -> str:
         strange = re.search(r"unrecognized arguments: (--?[\w-]+)", message)

@@ -25,5 +25,5 @@ def main(argv: list[str]) -> int:
 
 
 def _format_of_terminal() -> str:
-    encoding = getattr(sys.stdout, "encoding", None) or "ascii"  # there is none when stdout is closed
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
     return "unicode" if encoding.lower().startswith("utf") else "ascii"

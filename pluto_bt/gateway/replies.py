@@ -51,7 +51,7 @@ class Ok(Reply, frozen=True, kw_only=True):
 
 
 class Error(Reply, frozen=True, kw_only=True):
-    """RefusedError: `text` names what was expected and found."""
+    """Refused: `text` names what was expected and found."""
 
     code: str
     text: str
@@ -243,5 +243,3 @@ def _text(reply: AnyReply) -> str:  # one case a message: longer than a screen o
 
 def _seconds(time_s: float) -> str:
     return f"{time_s:.6f}"
-
-

@@ -12,10 +12,11 @@ from typing import TextIO
 
 from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.gateway.commands import COMMANDS, DONE, FAILED, USAGE, UsageError
+from pluto_bt.gateway.listen import Address
 from pluto_bt.source import did_you_mean
 
 INTERRUPTED = 130
-DEFAULT_ADDRESS = "127.0.0.1:7500"
+DEFAULT_ADDRESS = str(Address())
 _ADDRESS = re.compile(r"(\[[0-9A-Fa-f:]+\]|[A-Za-z0-9.-]*):([0-9]{1,5})")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.requests import Subscribe
@@ -78,10 +78,6 @@ class Subscriptions:
             wish = self._wish(topic)
             self._flows[topic] = Flow(wish) if wish else None
         return self._flows[topic]
-
-    def watched(self, topics: Iterable[str]) -> Iterator[str]:
-        """Those of `topics` that this client wants."""
-        return (topic for topic in topics if self.flow(topic) is not None)
 
     def offer(self, values: Iterable[Newest], now_s: float) -> None:
         """New values of any topics."""

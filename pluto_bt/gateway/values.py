@@ -73,5 +73,3 @@ def _type_name(hint: Any) -> str:
 
 def _unit(name: str) -> str:
     return _UNITS.get(name.rsplit("_", 1)[-1], "") if "_" in name else ""
-
-

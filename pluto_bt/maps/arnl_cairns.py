@@ -12,13 +12,13 @@ from typing import Literal
 
 import numpy as np
 
+from pluto_bt.maps.numbers import NUMBER
 from pluto_bt.maps.world import Area, Goal, Line, Points
 from pluto_bt.source import Faults
 from pluto_bt.source.text import SourceText
 
 _FIELD = re.compile(r'"[^"]*+"|\S++')
 _NAMED = re.compile(r'Name=([^\s"]++)')
-_NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d{1,3})?")
 MAX_MM = 1e9
 AreaKind = Literal["forbidden", "restrictive", "one-way", "sector"]
 AREA_KINDS: dict[str, AreaKind] = {"forbidden": "forbidden", "restrictive": "restrictive", "one-way": "one-way", "sector": "sector"}
@@ -63,7 +63,7 @@ class Cairns:
         """The numbers that the fields begin with; words after them belong to other programs."""
         numbers: list[float] = []
         for text, _ in fields:
-            value = float(text) if _NUMBER.fullmatch(text) else math.nan
+            value = float(text) if NUMBER.fullmatch(text) else math.nan
             if not abs(value) <= MAX_MM:
                 break
             numbers.append(value)

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.maps.arnl_cairns import Cairns
+from pluto_bt.maps.arnl_cairns import MAX_MM, Cairns
+from pluto_bt.maps.numbers import NUMBER
 from pluto_bt.maps.world import OccupancyGrid, RobotStart, Shape, World
 from pluto_bt.source import Faults, did_you_mean
 from pluto_bt.source.text import SourceText, decode, read_bytes
@@ -21,12 +22,11 @@ from pluto_bt.source.text import SourceText, decode, read_bytes
 FIRST_LINES = ("2D-Map", "2D-Map-Ex", "2D-Map-Ex2")
 CELL_M = 0.05
 MAX_CELLS = 64_000_000
-MAX_MM = 1e9
 MAX_LINES = 100_000
 MAX_METADATA = 50_000
 MAX_ERRORS = 100
 _BLANK = re.compile(r"\s*+")
-_NUMBER = r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d{1,3})?"
+_NUMBER = NUMBER.pattern
 _ROWS = {
     count: re.compile(rf"(?:[ \t]*+(?:{_NUMBER}[ \t]++){{{count - 1}}}{_NUMBER}[ \t]*+(?:\n++|\Z))++") for count in (2, 4)
 }  # data rows, with the blank lines between them
@@ -155,7 +155,7 @@ class _ArnlReading:
             self._error(at, "bad-number", f"{key} must be a whole number", f"{key}: how many rows {section} has", count or "nothing")
 
     def _numbers(self, words: str) -> list[float]:
-        return [float(word) for word in words.split()] if all(re.fullmatch(_NUMBER, word) for word in words.split()) else []
+        return [float(word) for word in words.split()] if all(NUMBER.fullmatch(word) for word in words.split()) else []
 
     def _check_counts(self) -> None:
         """A wrong count is only a warning: the format says not to rely on it."""

@@ -9,14 +9,13 @@ from typing import TypeVar
 
 import numpy as np
 
+from pluto_bt.maps.numbers import MAX_METRES, NUMBER
 from pluto_bt.maps.world import Points
 from pluto_bt.source import Faults, Place, XmlElement, did_you_mean
 
 W = TypeVar("W", bound=str)
-MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the rounding
 MAX_BAD_POINTS = 20  # told of one element
 MAX_STRANGERS = 100
-NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d{1,3})?")
 _WORD = re.compile(r"\S++")
 
 

@@ -15,6 +15,7 @@ from pluto_bt.source import Faults, Place
 
 MAX_PIXELS = 64_000_000  # 400 m square at 0.05 m
 MAX_COLOUR_PIXELS = 16_000_000
+_PNG_START, _PNG_END = b"\x89PNG\r\n\x1a\n", b"IEND\xaeB`\x82"
 _NO_DIGIT = re.compile(rb"[^0-9\s]\S*+|[0-9]{10,}+")
 _PGM_HEAD = re.compile(rb"(P[25])(?:\s++|#[^\n]*+\n)++(\d{1,6})(?:\s++|#[^\n]*+\n)++(\d{1,6})(?:\s++|#[^\n]*+\n)++(\d{1,6})(?:\s|#[^\n]*+\n)")
 
@@ -41,6 +42,9 @@ def read_grey_image(data: bytes, name: str, place: Place, faults: Faults) -> Gre
         return None
     if data[:2] in (b"P2", b"P5"):
         return _read_pgm(data, name, place, faults)
+    if data.startswith(_PNG_START) and _PNG_END not in data:  # Pillow does not mind
+        faults.error(place, "bad-image", f'image "{name}" is cut off', expected="a PNG image with its end", found=f"{len(data)} bytes without it")
+        return None
     return _read_with_pillow(data, name, place, faults)
 
 
@@ -123,7 +127,7 @@ def _read_with_pillow(data: bytes, name: str, place: Place, faults: Faults) -> G
 def _grey(image: Any) -> GreyImage:
     """Colours count by the mean of their channels, as in map_server."""
     if image.mode in ("1", "L"):
-        return GreyImage(np.asarray(image.convert("L")), 255)
+        return GreyImage(np.asarray(image if image.mode == "L" else image.convert("L")), 255)
     if image.mode.startswith("I"):
         return GreyImage(np.clip(np.asarray(image), 0, 65535).astype(np.uint16), 65535)
     has_alpha = "A" in image.getbands() or "transparency" in image.info

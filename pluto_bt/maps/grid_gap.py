@@ -54,7 +54,7 @@ def grid_gap(free: NDArray[np.uint8], outline: Table, limit: float) -> tuple[flo
 def nearest_side(free: NDArray[np.uint8], x: float, y: float) -> int:
     """Cells to the nearest solid cell, chessboard distance; 0 in one; `LONGEST` = that far or unknown (also outside of the grid)."""
     if not (0.0 <= x < free.shape[2] and 0.0 <= y < free.shape[1]):
-        return 254
+        return LONGEST
     column, row = int(x), int(y)
     side = int(min(min(free[0, row, column], free[1, row, column]), min(free[2, row, column], free[3, row, column])))
-    return 0 if side == 255 else side
+    return 0 if side == INSIDE else side

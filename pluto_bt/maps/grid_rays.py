@@ -16,8 +16,6 @@ from pluto_bt.maps.free_squares import INSIDE
 from pluto_bt.maps.kernel import inline_kernel, kernel
 
 FAR = 1e300  # stands for 1 / 0: a ray along a line never crosses it
-
-
 NEAR_A_LINE = 1e-6  # cells; far above the rounding of a position, which is below 1e-9 in any grid that fits the memory
 NEVER = 1e-200  # a slope below this is taken for none
 

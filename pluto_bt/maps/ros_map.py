@@ -26,13 +26,16 @@ from pluto_bt.source.yaml_reader import read_yaml
 KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 MODES = ("trinary", "scale", "raw")
 MIN_RESOLUTION_M = 1e-4
+ROWS_AT_ONCE = 64
 MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the rounding
 
 
 def read_ros_map(path: Path, shown_name: str, faults: Faults) -> World | None:
     """The map as a world that has nothing but a grid, or None and faults."""
-    values, places = read_yaml(path, shown_name, faults)
-    if not values:
+    reading = Faults()
+    values, places = read_yaml(path, shown_name, reading)
+    faults.extend(reading.in_order())
+    if reading.has_errors:
         return None
     fields = _MapFields(values, places, faults)
     fields.warn_of_unknown_keys()
@@ -48,8 +51,7 @@ def read_ros_map(path: Path, shown_name: str, faults: Faults) -> World | None:
     image = fields.image(path, shown_name)
     if image is None or fields.has_errors:
         return None
-    is_obstacle, is_unknown = cells(image, mode, negate, occupied, free)
-    grid = OccupancyGrid(_grid_rows(is_obstacle), _grid_rows(is_unknown), resolution_m, origin)
+    grid = OccupancyGrid(*cells(_lowest_first(image), mode, negate, occupied, free), resolution_m, origin)
     return World(name=Path(shown_name).stem, file=shown_name, grid=grid)
 
 
@@ -65,18 +67,26 @@ def cells(
         dark = shade if negate else 1.0 - shade
         obstacle = dark > occupied_thresh
         unknown = ~obstacle & ~(dark < free_thresh) if mode == "trinary" else np.zeros_like(obstacle)
-    is_obstacle, is_unknown = obstacle.astype(np.uint8)[image.grey], unknown.astype(np.uint8)[image.grey]
+    is_obstacle, is_unknown = _looked_up(obstacle, image.grey), _looked_up(unknown, image.grey)
     if mode == "scale" and image.is_opaque is not None:
         is_obstacle &= image.is_opaque
         is_unknown |= ~image.is_opaque
+    is_obstacle.setflags(write=False)
+    is_unknown.setflags(write=False)
     return is_obstacle, is_unknown
 
 
-def _grid_rows(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _looked_up(table: NDArray[np.bool_], grey: NDArray[Any]) -> NDArray[np.uint8]:
+    """`table[grey]` as 0 or 1, some rows at a time: indexing widens the index to eight bytes a pixel."""
+    values, found = table.astype(np.uint8), np.zeros(grey.shape, np.uint8)
+    for first in range(0, len(grey), ROWS_AT_ONCE):
+        found[first : first + ROWS_AT_ONCE] = values[grey[first : first + ROWS_AT_ONCE]]
+    return found
+
+
+def _lowest_first(image: GreyImage) -> GreyImage:
     """Row 0 of an image is the top, row 0 of a grid the lowest y."""
-    rows = np.ascontiguousarray(pixels[::-1])
-    rows.setflags(write=False)
-    return rows
+    return GreyImage(image.grey[::-1], image.white, None if image.is_opaque is None else image.is_opaque[::-1])
 
 
 class _MapFields:

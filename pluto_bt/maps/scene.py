@@ -63,15 +63,6 @@ class Scene:
         self._scan, self._cones = scan_solids.compiled(), cones_nearest.compiled()
         self._nearest, self._touching, self._hole_under = nearest_solid.compiled(), touching_solids.compiled(), hole_under.compiled()
 
-    def warm(self) -> None:
-        """Ask every question once, so that no later one waits for its kernel to be compiled or read from the cache."""
-        pose, triangle = (0.0, 0.0, 0.0), ((0.0, 0.0), (1e-3, 0.0), (0.0, 1e-3))
-        self.scan(pose, 0.0, 0.0, np.zeros(1), 0.0, np.zeros(1))
-        self.cones((0.0,), (0.0,), (0.0,), 0.0, 1e-3, 0.0, np.zeros(1))
-        self.contacts(triangle)
-        self.clearance(triangle)
-        self.over_hole(triangle)
-
     # what changes it
 
     def remove(self, id: str) -> None:

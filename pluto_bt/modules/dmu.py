@@ -13,7 +13,7 @@ from estimation.gyro_bias import BiasNews, GyroBias
 from estimation.inertial import InertialHeading
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
 from pluto_bt.modules.context import Context
-from pluto_bt.modules.imu import _check, imu_state
+from pluto_bt.modules.imu import imu_state, sum_of_numbers
 from pluto_bt.modules.relay import Relay
 
 
@@ -31,7 +31,7 @@ class Dmu(Relay[InertialRecord]):
     """`dmu/raw` as measured; `dmu/state` filtered, bias removed once it is known, stamped the filter's delay earlier."""
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context, "dmu", "dmu/raw", InertialRecord, _check, imu_state)
+        super().__init__(context, "dmu", "dmu/raw", InertialRecord, sum_of_numbers, imu_state)
         p = context.parameters(DmuParameters)
         self._parameters = p
         self._state = context.board.publisher("dmu/state", "dmu")

@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
+import msgspec
+
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
 from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
@@ -16,8 +18,7 @@ from pluto_bt.trees import Mission, MissionError
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
-RUN_STATES = {"running": "running", "paused": "running", "succeeded": "succeeded", "failed": "failed"}
-STATE_OF_END = {"preempted": "preempted", "timeout": "timeout"}
+ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire
 ERRANDS_KEPT = 64
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 
@@ -117,9 +118,9 @@ class GatewayPort:
             self._system.executive.core.end_errand(activity, "timeout")
             return RunState("timeout", "timeout", "the deadline is over")
         if activity.state == ABORTED:
-            return RunState(STATE_OF_END.get(activity.reason, "cancelled"), activity.reason)
+            return RunState(activity.reason if activity.reason in ENDS else "cancelled", activity.reason)
         outputs = tuple(activity.mission.outputs().items()) if activity.is_over else ()
-        return RunState(RUN_STATES[activity.state], activity.reason, activity.text, outputs)
+        return RunState(RUNNING if activity.state == PAUSED else activity.state, activity.reason, activity.text, outputs)
 
     def cancel(self, run: str, reason: str) -> None:
         """End an errand with zero velocity."""
@@ -128,9 +129,10 @@ class GatewayPort:
             self._system.executive.core.end_errand(errand.activity, reason)
 
     def mission_state(self) -> MissionState:
-        """The mission."""
-        sample = self._system.board.newest("mission/state")
-        return sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
+        """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
+        sample, coming = self._system.board.newest("mission/state"), self._system.executive.core.coming_state
+        known = sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
+        return known if known.state == coming else msgspec.structs.replace(known, state=coming, reason="")
 
     def mission_names(self) -> Sequence[str]:
         """The shipped missions."""
@@ -179,8 +181,8 @@ class GatewayPort:
             raise RefusedError("unknown-module", f'no module "{name}"') from None
 
     def _mission_runs(self) -> bool:
-        mission = self._system.executive.core.mission
-        return mission is not None and mission.state == RUNNING
+        state: str = self._system.executive.core.coming_state
+        return state == RUNNING
 
     def _refuse_if_latched(self) -> None:
         if self._estop is not None:

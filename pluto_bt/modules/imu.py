@@ -10,7 +10,7 @@ from pluto_bt.modules.context import Context
 from pluto_bt.modules.relay import Relay
 
 
-def _check(record: InertialRecord) -> float:
+def sum_of_numbers(record: InertialRecord) -> float:
     """Not finite if anything but theta is not; theta is NaN in a sensor that does not know it."""
     return sum(record.turn_rates_radps) + sum(record.accelerations_mps2) + record.phi_rad + record.psi_rad
 
@@ -26,4 +26,4 @@ class Imu(Relay[InertialRecord]):
     """`imu/state` from the sensor."""
 
     def __init__(self, context: Context) -> None:
-        super().__init__(context, "imu", "imu/state", InertialRecord, _check, imu_state)
+        super().__init__(context, "imu", "imu/state", InertialRecord, sum_of_numbers, imu_state)

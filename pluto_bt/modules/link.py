@@ -6,11 +6,12 @@ from collections.abc import Callable
 from typing import Any, cast
 
 from pluto_bt.blackboard import Publisher
+from pluto_bt.blackboard.codes import MotionCommand
 from pluto_bt.blackboard.inbox import Letter
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message
 from pluto_bt.modules.context import Context
 
-RELEASE = -1
+RELEASE = int(MotionCommand.RELEASE)
 
 
 def newest(context: Context, topic: str) -> Callable[[], Any]:

@@ -16,6 +16,8 @@ from pluto_bt.blackboard.poses import pose_at
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 
+TOO_OLD = "too-old"  # nobody remembers where the robot pointed then
+
 
 class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Table `[marker]` of the platform file: the gate's figures from the car's notes, and what an accepted marker is trusted with."""
@@ -61,9 +63,12 @@ class Marker:
                 self._judge(record, now_s)
 
     def _judge(self, r: MarkerRecord, now_s: float) -> None:
-        pose = self._pose_then(r.stamp_s)
+        newest = self._newest()
+        pose = pose_at(self._board, "Localization/Pose", r.stamp_s)
+        is_past = pose is None and newest is not None and r.stamp_s < newest.stamp_s
+        pose = pose or newest
         heading_rad = self._start_rad if pose is None else pose.pose[3]
-        refused = self.gate.judge(r.stamp_s, (r.x_m, r.y_m, r.theta_rad), r.quality, heading_rad)
+        refused = TOO_OLD if is_past else self.gate.judge(r.stamp_s, (r.x_m, r.y_m, r.theta_rad), r.quality, heading_rad)
         self._state.put(MarkerState(r.stamp_s, r.marker, r.x_m, r.y_m, r.theta_rad, r.quality, refused, self.gate.accepted_count), now_s)
         if not refused and self._is_credible(r, pose):
             self._post(r, heading_rad, 0.0 if pose is None else pose.covariance[8])
@@ -77,11 +82,8 @@ class Marker:
         was_far, self._was_far = self._was_far, is_far
         return was_far or not is_far
 
-    def _pose_then(self, stamp_s: float) -> Pose | None:
-        """The estimate when the picture was taken; the newest one if that is not in the history."""
-        then = pose_at(self._board, "Localization/Pose", stamp_s)
-        if then is not None:
-            return then
+    def _newest(self) -> Pose | None:
+        """The estimate now; None before the first."""
         sample = self._board.newest("Localization/Pose")
         return sample.value if sample is not None and isinstance(sample.value, Pose) else None
 

@@ -18,10 +18,9 @@ from pluto_bt.skills.avoid import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.source import Faults, InputError, Place, did_you_mean
-from pluto_bt.source.text import MIB, read_text
-from pluto_bt.source.toml_reader import read_toml
+from pluto_bt.source.text import read_text
+from pluto_bt.source.toml_reader import MAX_TOML_BYTES, read_toml
 
-MAX_BYTES = MIB
 SHIPPED = ("atrv2", "car", "jbot", "pioneer")
 
 
@@ -72,7 +71,7 @@ def _text_of(name: str, named_at: Place, faults: Faults) -> str | None:
                      found=name or "nothing", mend=did_you_mean(name, SHIPPED))  # fmt: skip
         return None
     reading = Faults()
-    text = read_text(name, name, reading, max_bytes=MAX_BYTES)
+    text = read_text(name, name, reading, max_bytes=MAX_TOML_BYTES)
     for fault in reading.in_order():
         place = Place(fault.file, fault.line, fault.column, fault.source_line) if fault.line else named_at
         faults.error(place, fault.code, fault.message, expected=fault.expected, found=fault.found, mend=fault.mend)
@@ -87,7 +86,8 @@ def _check_body(robot: RobotFile, place: Place, faults: Faults) -> None:
     elif is_flat(outline):
         faults.error(place, "no-area", "body.outline_m encloses no area")
     if robot.body.kinematics == "ackermann" and robot.body.min_turn_radius_m <= 0:
-        faults.error(place, "missing-parameter", "an ackermann body needs min_turn_radius_m > 0")
+        faults.error(place, "missing-parameter", "an ackermann body needs min_turn_radius_m", expected="metres, > 0", found="0",
+                     mend="add min_turn_radius_m = … to [body]")  # fmt: skip
 
 
 __all__ = ["SHIPPED", "InputError", "RobotFile", "load_robot_file"]

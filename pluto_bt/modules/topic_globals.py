@@ -73,5 +73,3 @@ class TopicGlobals:
             return getter(sample.value)
         except IndexError:
             raise KeyError(name) from None
-
-

@@ -30,7 +30,7 @@ class Lockstep:
         """Every part is due for the first time at once; the parts themselves have been started by the caller."""
         now_ns = self._clock.now_ns()
         for row, part in enumerate(self.parts):
-            if part.module.period_ns:
+            if part.period_ns:
                 heapq.heappush(self._due, (now_ns, row, False))
 
     def waker(self, row: int) -> Waker:
@@ -59,7 +59,7 @@ class Lockstep:
                 heapq.heappop(due)
                 woken[row] = False
             else:
-                heapq.heapreplace(due, (at_ns + part.module.period_ns, row, False))
+                heapq.heapreplace(due, (at_ns + part.period_ns, row, False))
             self.turns += 1
             part.step(at_ns)
         self.current = None

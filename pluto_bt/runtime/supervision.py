@@ -52,6 +52,7 @@ class Part:
         self._wanted: bool | None = None  # an order to start or stop, carried out by the part's own thread
         self._back_off_ns = FIRST_BACK_OFF_NS
         self._budget_ns = round(module.budget_ms * 1e6)
+        self.period_ns = module.period_ns
 
     def start(self, now_ns: int) -> None:
         """Start the component; harmless if it runs."""

@@ -37,7 +37,7 @@ class _Group(threading.Thread):
 
     def run(self) -> None:
         now_ns = self.clock.now_ns()
-        due_ns = [now_ns if part.module.period_ns else -1 for part in self.parts]
+        due_ns = [now_ns if part.period_ns else -1 for part in self.parts]
         while True:
             with self._wake:
                 wait_s = self._seconds_to_next(due_ns)
@@ -63,9 +63,9 @@ class _Group(threading.Thread):
             if is_due:
                 late = now_ns - due_ns[index]
                 self.late_ns = max(self.late_ns, late)
-                missed = late // part.module.period_ns  # a late part does not run twice to catch up
+                missed = late // part.period_ns  # a late part does not run twice to catch up
                 part.overruns += missed
-                due_ns[index] += (missed + 1) * part.module.period_ns
+                due_ns[index] += (missed + 1) * part.period_ns
             self.busy_since_ns, self.current = now_ns, part
             part.step(now_ns)
             self.current = None

@@ -159,8 +159,7 @@ class Avoid:
             self._goto.pause(now_s, dt_s)
             return self._post(0, 0.0, STILL, now_s)
         points = self.sight.points(senses.dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR), now_s)
-        is_moving = abs(senses.twist[0]) > 0.02 or abs(senses.twist[1]) > 0.05
-        way = self._goto.step(now_s, senses.pose, senses.dead, points, is_moving)
+        way = self._goto.step(now_s, senses.pose, senses.dead, points)
         self.goto_status = way.status
         if way.status is not GotoStatus.RUNNING:
             reason = reasons.STUCK if way.status is GotoStatus.STUCK else ""

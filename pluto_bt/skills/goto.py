@@ -20,6 +20,7 @@ from pluto_bt.skills.sweep import first_contact
 PROGRESS_M = 0.1  # coming nearer by less is no progress
 ARRIVAL_MPS = 0.08  # slowest approach
 COMFORT_SHARE = 0.5  # of the deceleration is used when nothing presses
+MOVED_M, MOVED_RAD = 0.01, 0.02  # less is standing still, whatever the wheels are told
 WEDGED_M = 0.05  # with less free way on the best heading the robot cannot go on
 BACKING_MPS = 0.12
 BACKING_S = 8.0
@@ -56,6 +57,7 @@ class Goto:
         self._progress_s = self._moved_s = now_s
         self._back_from: tuple[Planar, float] | None = None
         self._driven: list[Planar] = []
+        self._stood: Planar | None = None  # where the odometry was when it last told of a motion
         self._steer.forget()
 
     def pause(self, now_s: float, dt_s: float) -> None:
@@ -63,18 +65,17 @@ class Goto:
         self._progress_s = min(now_s, self._progress_s + dt_s)
         self._moved_s = min(now_s, self._moved_s + dt_s)
 
-    def step(self, now_s: float, pose: Planar, odometry: Planar, points: Array, is_moving: bool) -> Way:
+    def step(self, now_s: float, pose: Planar, odometry: Planar, points: Array) -> Way:
         """The next decision.
 
         Args:
             pose: of the robot in the frame of the goal.
             odometry: of the robot in a frame that never jumps.
             points: (n, 5) obstacles in the robot frame: x, y, margin, velocity.
-            is_moving: whether the robot really moved since the last step.
         """
         dx, dy = self._goal[0] - pose[0], self._goal[1] - pose[1]
         distance_m, goal_rad = math.hypot(dx, dy), wrap(math.atan2(dy, dx) - pose[2])
-        self._note(now_s, distance_m, is_moving)
+        self._note(now_s, distance_m, odometry)
         if self._is_there(distance_m, goal_rad, now_s):
             self.status = GotoStatus.REACHED
             return Way(0.0, 0.0, self.status, f"goal reached within {distance_m:.2f} m")
@@ -92,11 +93,12 @@ class Goto:
         """The way back is blocked too."""
         self._back_from = None
 
-    def _note(self, now_s: float, distance_m: float, is_moving: bool) -> None:
+    def _note(self, now_s: float, distance_m: float, odometry: Planar) -> None:
         if distance_m < self._best_m - PROGRESS_M:
             self._best_m, self._progress_s = distance_m, now_s
-        if is_moving:
-            self._moved_s = now_s
+        stood = self._stood
+        if stood is None or math.dist(stood[:2], odometry[:2]) > MOVED_M or abs(wrap(odometry[2] - stood[2])) > MOVED_RAD:
+            self._stood, self._moved_s = odometry, now_s
 
     def _is_there(self, distance_m: float, goal_rad: float, now_s: float) -> bool:
         """Inside half the tolerance; or inside the tolerance and not coming nearer any more."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from pluto_bt.maps.platform import Platform
+from pluto_bt.maps.platform import Body, Platform
 
 Twist = tuple[float, float]  # forward speed m/s, turn rate rad/s (counter-clockwise)
 STILL: Twist = (0.0, 0.0)
@@ -34,13 +34,13 @@ def limits_of(
         min(acceleration_mps2 or math.inf, most.acceleration_mps2),
         min(deceleration_mps2 or math.inf, most.deceleration_mps2),
         math.radians(most.turn_acceleration_dps2),
-        _tightest_radius_m(body.min_turn_radius_m, body.min_turn_radius_percent, body.wheel_base_m) if body.kinematics == "ackermann" else 0.0,
+        _tightest_radius_m(body) if body.kinematics == "ackermann" else 0.0,
     )
 
 
-def _tightest_radius_m(radius_m: float, at_percent: float, wheel_base_m: float) -> float:
+def _tightest_radius_m(body: Body) -> float:
     """Turning radius at full lock: curvature grows linearly with the steering percentage."""
-    return (radius_m or 2.0 * wheel_base_m) * at_percent / 100.0
+    return body.min_turn_radius_m * body.min_turn_radius_percent / 100.0
 
 
 def within(twist: Twist, limits: Limits) -> Twist:

@@ -32,10 +32,11 @@ class SonarRing:
         self.min_range_m = sonar.min_range_m
         self.count = len(sonar.transducers)
         spread_rad = math.radians(sonar.cone_deg) * ECHO_SPREAD
-        self._places = np.array([(t.x_m, t.y_m) for t in sonar.transducers]).repeat(POINTS_AN_ECHO, axis=0)
+        places = np.array([(t.x_m, t.y_m) for t in sonar.transducers]).repeat(POINTS_AN_ECHO, axis=0)
         angles = [math.radians(t.theta_deg) + side * spread_rad for t in sonar.transducers for side in (-1.0, 0.0, 1.0)]
-        self._ways = np.column_stack([np.cos(angles), np.sin(angles)])
-        self._leaves_m = np.array([outline.way_out_m(*place, *way) for place, way in zip(self._places.tolist(), self._ways.tolist(), strict=True)])
+        ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        leaves_m = [outline.way_out_m(*place, *way) for place, way in zip(places.tolist(), ways.tolist(), strict=True)]
+        self._beams = np.column_stack([places, ways, leaves_m])
         self.axes = np.array([(t.x_m, t.y_m, math.radians(t.theta_deg)) for t in sonar.transducers])
         self.half_cone_rad = math.radians(sonar.cone_deg) / 2.0
         self.hears_behind = any(abs(math.remainder(math.radians(t.theta_deg), math.tau)) > math.radians(135.0) for t in sonar.transducers)
@@ -53,13 +54,7 @@ class SonarRing:
 
         A transducer is deaf below its least range and reports that range for everything nearer: such an echo is put on the outline.
         """
-        mask = wanted.repeat(POINTS_AN_ECHO)
-        echoes = np.where(ranges_m > self.min_range_m + DEAF_M, ranges_m, 0.0).repeat(POINTS_AN_ECHO)[mask]
-        echoes = np.maximum(echoes, self._leaves_m[mask])
-        points = np.zeros((len(echoes), 5))
-        points[:, 2] = margin_m
-        points[:, :2] = self._places[mask] + self._ways[mask] * echoes[:, None]
-        return points
+        return echo_points(ranges_m, wanted, self._beams, self.min_range_m + DEAF_M, margin_m)
 
 
 def sonar_code(x_m: float, y_m: float, outline: Outline) -> LinkStatus:
@@ -74,6 +69,28 @@ def where_word(x_m: float, y_m: float) -> str:
     """ "3 degrees left", "120 degrees right": the bearing of a point for a sentence."""
     bearing_deg = math.degrees(math.atan2(y_m, x_m))
     return f"{abs(bearing_deg):.0f} degrees {'left' if bearing_deg >= 0.0 else 'right'}"
+
+
+@kernel
+def echo_points(ranges_m: Array, wanted: Mask, beams: Array, deaf_below_m: float, margin_m: float) -> Array:
+    """(n, 5) x, y, margin and no velocity: the points of the wanted transducers' echoes, as many for each as there are beams.
+
+    Args:
+        beams: (k * POINTS_AN_ECHO, 5) x m, y m, cos, sin, and the way out of the outline in metres.
+        deaf_below_m: an echo up to here may come from anything nearer: it is put on the outline.
+    """
+    per_echo = beams.shape[0] // ranges_m.shape[0]
+    points = np.zeros((np.count_nonzero(wanted) * per_echo, 5))
+    n = 0
+    for b in range(beams.shape[0]):
+        k = b // per_echo
+        if wanted[k]:
+            way_m = max(ranges_m[k] if ranges_m[k] > deaf_below_m else 0.0, beams[b, 4])
+            points[n, 0] = beams[b, 0] + beams[b, 2] * way_m
+            points[n, 1] = beams[b, 1] + beams[b, 3] * way_m
+            points[n, 2] = margin_m
+            n += 1
+    return points
 
 
 @kernel

@@ -54,9 +54,7 @@ class Steer:
         self._last_rad: float | None = None
         self._side = 0.0
 
-    def choose(
-        self, points: Array, goal_rad: float, goal_m: float, force: float, turnable_rad: tuple[float, float], heading_rad: float
-    ) -> Steering:
+    def choose(self, points: Array, goal_rad: float, goal_m: float, force: float, turnable_rad: tuple[float, float], heading_rad: float) -> Steering:
         """The heading to take.
 
         Args:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Literal, NoReturn
+from typing import ClassVar, Literal, NoReturn
 
 Severity = Literal["error", "warning"]
 
@@ -81,10 +81,11 @@ class InputError(PlutoError):
 class Faults:
     """Collects the faults of one reading; the reader goes on after each, so that all are told at once."""
 
-    LIMIT = 1000  # a broken generator must not fill the memory with reports
+    LIMITS: ClassVar[dict[Severity, int]] = {"error": 1000, "warning": 200}  # a broken generator must not fill the memory with reports
 
     def __init__(self) -> None:
         self._faults: list[Fault] = []
+        self._counts: dict[Severity, int] = {"error": 0, "warning": 0}
 
     def error(self, place: Place, code: str, message: str, *, expected: str = "", found: str = "", mend: str = "") -> None:
         """Note an error; `code` is a short documented word such as `unknown-port`."""
@@ -95,13 +96,26 @@ class Faults:
         self._add(place, "warning", code, message, expected, found, mend)
 
     def _add(self, place: Place, severity: Severity, code: str, message: str, expected: str, found: str, mend: str) -> None:
-        if len(self._faults) < self.LIMIT:
-            message, expected, found, mend = map(_quotable, (message, expected, found, mend))
-            self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
+        limit = self.LIMITS[severity]
+        if self._counts[severity] >= limit:
+            return
+        self._counts[severity] += 1
+        if self._counts[severity] == limit:
+            place, code, message = Place(place.file), "too-many-faults", f"there are more {severity}s than can be told"
+            expected, found, mend = f"at most {limit}", "more", "mend the first ones"
+        message, expected, found, mend = map(_quotable, (message, expected, found, mend))
+        self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
 
     def extend(self, faults: Iterable[Fault]) -> None:
         """Take over faults found by another reader."""
-        self._faults.extend(faults)
+        for fault in faults:
+            self._faults.append(fault)
+            self._counts[fault.severity] += 1
+
+    @property
+    def is_full(self) -> bool:
+        """True if no further error is taken: reading on makes no sense. (Warnings never hide an error.)"""
+        return self._counts["error"] >= self.LIMITS["error"]
 
     def __bool__(self) -> bool:
         return bool(self._faults)
@@ -112,7 +126,7 @@ class Faults:
     @property
     def has_errors(self) -> bool:
         """True if at least one is more than a warning."""
-        return any(fault.severity == "error" for fault in self._faults)
+        return self._counts["error"] > 0
 
     def in_order(self) -> tuple[Fault, ...]:
         """All faults, by file (in the order first seen), line and column."""

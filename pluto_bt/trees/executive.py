@@ -73,22 +73,31 @@ class Executive:
     def __init__(self, body: Body, say: Callable[[str, str, str], None]) -> None:
         self._body = body
         self._say = say  # (level, code, text)
-        self._orders: deque[Callable[[], None]] = deque()
+        self._orders: deque[tuple[Callable[[], None], dict[str, str]]] = deque()  # what to do; what it makes of the mission's state
         self._runs = 0
         self.mission: Activity | None = None
         self.errand: Activity | None = None
         self.job: Activity | None = None
         self._job_body = body
+        self.ticking: Activity | None = None  # for the watchdog: who is at work
 
     @property
     def active(self) -> Activity | None:
         """What is ticked: the errand while there is one, else the mission."""
         return self.errand if self.errand is not None and not self.errand.is_over else self.mission
 
+    @property
+    def coming_state(self) -> str:
+        """The mission's state once all orders that wait are carried out: what a new order has to reckon with."""
+        state = IDLE if self.mission is None else self.mission.state
+        for _, turns in tuple(self._orders):
+            state = turns.get(state, turns.get("", state))
+        return state
+
     def step(self, now_s: float) -> list[Activity]:
         """One turn: orders, a fresh view, one decision of the mission and one of the job. Gives what was ticked."""
         while self._orders:
-            self._orders.popleft()()
+            self._orders.popleft()[0]()
         ticked = [activity for activity in (self.active, self.job) if activity is not None and activity.state == RUNNING]
         if not ticked:
             return ticked
@@ -96,9 +105,11 @@ class Executive:
         for activity in ticked:
             if activity is self.job:
                 self._job_body.refresh(now_s)
+            self.ticking = activity
             activity.tick()
             if activity.is_over:
                 self._close(activity)
+        self.ticking = None
         return ticked
 
     def _close(self, activity: Activity) -> None:
@@ -110,13 +121,13 @@ class Executive:
 
     def start(self, mission: Mission) -> None:
         """Run `mission` from its beginning at the next step; one that runs is ended."""
-        self._orders.append(lambda: self._start(mission))
+        self._orders.append((lambda: self._start(mission), {"": RUNNING}))
 
     def start_errand(self, mission: Mission) -> Activity:
         """Run a single node beside a mission that does not run; an errand that goes on is ended."""
         self._runs += 1
         errand = Activity(mission, self._runs)
-        self._orders.append(lambda: self._start_errand(errand))
+        self._orders.append((lambda: self._start_errand(errand), {}))
         return errand
 
     def start_job(self, mission: Mission, body: Body) -> None:
@@ -134,16 +145,16 @@ class Executive:
         """End an errand; harmless if it is over."""
         if not errand.is_over:
             self._body.stop()
-            self._orders.append(lambda: errand.end(reason))
+            self._orders.append((lambda: errand.end(reason), {}))
 
     def pause(self, reason: str) -> None:
         """Stop the robot now; the mission waits for `resume`, an errand ends. Thread-safe."""
         self._body.stop()
-        self._orders.append(lambda: self._pause(reason))
+        self._orders.append((lambda: self._pause(reason), {RUNNING: PAUSED}))
 
     def resume(self) -> None:
         """Let a paused mission go on where its tree stands; motion leaves command again when they are next ticked."""
-        self._orders.append(self._resume)
+        self._orders.append((self._resume, {PAUSED: RUNNING}))
 
     def let_go(self) -> None:
         """Stop the robot if something is at work; it stays in its state, and goes on when `step` is called again."""
@@ -153,7 +164,7 @@ class Executive:
     def abort(self, reason: str) -> None:
         """Stop the robot now and end the mission and any errand."""
         self._body.stop()
-        self._orders.append(lambda: self._abort(reason))
+        self._orders.append((lambda: self._abort(reason), {RUNNING: ABORTED, PAUSED: ABORTED}))
 
     def _start(self, mission: Mission) -> None:
         self._abort("preempted")

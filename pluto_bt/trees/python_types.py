@@ -149,4 +149,4 @@ def _only_objects(data_type: Any) -> Kind:
             raise ValueError(f"expected a {name}")
         return value
 
-    return Kind(name, "{key}", parse, cast, wanted if isinstance(wanted, type) else None, literals=False)
+    return Kind(name, "{key}", parse, cast, wanted if isinstance(wanted, type) else None)

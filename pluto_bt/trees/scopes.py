@@ -7,7 +7,7 @@ Every assignment counts as a write, even of an equal value: `seq` counts them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 from pluto_bt.trees.values import STRING, Kind, PortProblem, kind_of_value
@@ -85,7 +85,6 @@ class Board:
         self.robot: Any = None
         self.topic_names = frozenset(topics.names()) if topics is not None else frozenset()
         self.changes = 0  # counts entries made and removed, so that readers know when to look again
-        self.scopes: list[Scope] = []
         self.root = Scope(self, None, "")
 
 
@@ -99,7 +98,6 @@ class Scope:
         self.entries: dict[str, Entry] = {}
         self.remap: dict[str, str] = {}
         self.autoremap = False
-        board.scopes.append(self)
 
     def find(self, key: str) -> Entry | None:
         """The entry that `key` means here, or None."""
@@ -163,10 +161,6 @@ class Scope:
             self.board.root.unset(key[1:])
         elif self.entries.pop(key, None) is not None:
             self.board.changes += 1
-
-    def keys(self) -> Iterator[str]:
-        """The local names, in the order they came."""
-        return iter(self.entries)
 
     def _falls_through(self, key: str) -> bool:
         return self.autoremap and not key.startswith("_")

@@ -39,7 +39,6 @@ class Kind:
         cast: value of a value of another kind; raises ValueError.
         python: values of exactly this type need no cast.
         typed: False for "anything".
-        literals: False if the value can only come from another node.
         raw: True if a reader wants the entry's value as it is, not converted.
     """
 
@@ -49,7 +48,6 @@ class Kind:
     cast: Callable[[Any], Any]
     python: type | None = None
     typed: bool = True
-    literals: bool = True
     raw: bool = False
 
     def convert(self, value: Any) -> Any:

@@ -14,7 +14,6 @@ SECONDS_AN_HOUR = 3600.0
 class BatterySensor:
     """Voltage, once a second; linear from full to empty over the hours of the platform file. An ideal battery stays full."""
 
-    delay_s = 0.0
     period_ns = NS
 
     def __init__(self, figures: platform.Battery, body: Body, ideal: bool) -> None:

@@ -17,7 +17,6 @@ REPEAT_S = 0.1  # a change is reported at once, the same state every 0.1 s
 class BumperSensor:
     """Both panels. An ideal bumper is always open (the manual's dummy base)."""
 
-    delay_s = 0.0
     period_ns = period_ns(CHECK_HZ)
 
     def __init__(self, figures: platform.Bumpers, outline: Outline, body: Body, around: Surroundings, travel: Travel, ideal: bool) -> None:

@@ -17,8 +17,6 @@ SHADOW_TURN_DEG = (30.0, 90.0)  # 3DM-GX1 sheet: "yaw drags by tens of degrees n
 class CompassSensor:
     """Heading in the map frame. Each compass shadow turns the needle by an angle of its own, drawn once a run, 30° to 90° either way."""
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.Compass, n_shadows: int, body: Body, ground: Ground, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._body, self._ground, self._noise, self._ideal = body, ground, noise, ideal

@@ -21,8 +21,6 @@ CHANGE_RATE = 0.1  # share of readings at which a satellite comes or goes
 class GpsSensor:
     """Position in the map frame; quality 2 aided, 1 with few satellites, 0 in a shadow (then the last position is repeated, as receivers do)."""
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.Gps, body: Body, ground: Ground, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._figures, self._body, self._ground, self._noise, self._ideal = figures, body, ground, noise, ideal

@@ -18,8 +18,6 @@ ROCKING_S = 0.15  # a robot does not tilt at once when its point crosses the edg
 class InertialSensor:
     """A strapped-down sensor at the robot's centre, z up. At rest on level ground it reads +g on z."""
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.Inertial, body: Body, ground: Ground, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._absolute, self._body, self._ground = figures.absolute, body, ground

@@ -22,7 +22,7 @@ class LaserSensor:
 
     def __init__(self, figures: platform.Laser, around: Surroundings, body: Body, wrist: WristDevice | None, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
-        self.delay_s = figures.arrival_delay_s
+        self._delay_s = figures.arrival_delay_s
         self._figures, self._around, self._body, self._wrist, self._ideal = figures, around, body, wrist, ideal
         self._noise = RangeNoise(noise, figures.noise_m, figures.resolution_m, 0.0, figures.max_range_m, figures.dropout_rate, figures.dazzle_rate)
         field_rad = math.radians(figures.field_deg)
@@ -37,7 +37,7 @@ class LaserSensor:
         if not self._ideal:
             ranges = self._noise.spoiled(ranges)
         ranges.setflags(write=False)
-        return ScanRecord(now_s, now_s + self.delay_s, self._angle_min_rad, self._angle_step_rad, ranges)
+        return ScanRecord(now_s, now_s + self._delay_s, self._angle_min_rad, self._angle_step_rad, ranges)
 
     def true_ranges_m(self) -> NDArray[np.float64]:
         """(n,) exact ranges; the maximum where nothing is hit. The wrist pans about the laser's own vertical, then tilts the plane."""

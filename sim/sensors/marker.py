@@ -25,12 +25,12 @@ class MarkerSensor:
 
     def __init__(self, figures: platform.MarkerCamera, markers: tuple[Marker, ...], body: Body, ground: Ground, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
-        self.delay_s = figures.delay_s
+        self._delay_s = figures.delay_s
         self._figures, self._markers, self._body, self._ground, self._noise, self._ideal = figures, markers, body, ground, noise, ideal
 
     def sample(self, now_s: float) -> MarkerRecord:
         """One picture; without a marker in sight number −1 and quality 0."""
-        arrival_s, body = now_s + self.delay_s, self._body
+        arrival_s, body = now_s + self._delay_s, self._body
         marker = self._nearest()
         if marker is None:
             return MarkerRecord(now_s, arrival_s, NO_MARKER, 0.0, 0.0, 0.0, 0.0)

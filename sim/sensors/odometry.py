@@ -17,8 +17,6 @@ class OdometrySensor:
     `ideal`: what the body really did, without error (the manual's dummy base), also when it slips or is held by an obstacle.
     """
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.Odometry, track_m: float, body: Body, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._figures, self._track_m, self._body, self._noise, self._ideal = figures, track_m, body, noise, ideal

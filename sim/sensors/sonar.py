@@ -21,8 +21,6 @@ DUMMY_RANGE_M = 8.0  # Pluto manual: "The sonar is just 8 meters"
 class SonarSensor:
     """All transducers in one reading, in the order of the platform file. No echo is the maximum; nothing is nearer than the minimum."""
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.Sonar, around: Surroundings, body: Body, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._figures, self._around, self._body, self._ideal = figures, around, body, ideal

@@ -14,8 +14,6 @@ STANDSTILL_MPS = 0.005  # below this no pulse comes, and the sensor says 0 witho
 class WheelSpeedSensor:
     """How fast the wheels turn, whichever way, also when the car is held."""
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.WheelSpeed, body: Body, noise: Noise, ideal: bool) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._figures, self._body, self._noise, self._ideal = figures, body, noise, ideal

@@ -11,8 +11,6 @@ from sim.wrist import WristDevice
 class WristSensor:
     """Angles and rates of both joints; absolute encoders, taken as exact."""
 
-    delay_s = 0.0
-
     def __init__(self, figures: platform.Wrist, wrist: WristDevice) -> None:
         self.period_ns = period_ns(figures.rate_hz)
         self._wrist = wrist

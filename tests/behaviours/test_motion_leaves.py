@@ -261,7 +261,7 @@ def test_the_car_waits_for_gyro_and_marker_and_then_gives_up(make_car: Any) -> N
     stage.robot.is_at(0.0, 0.0)
     stage.tick(mission)
     assert "gyro" in mission.node_states()[-1].feedback
-    stage.robot.values["dmu/state"] = ImuState(stage.clock.now_s(), bias_known=True)
+    stage.robot.values["dmu/state"] = ImuState(stage.clock.now_s() + 60.0, bias_known=True)  # good for a minute
     assert run(stage, mission, 4.9) == "RUNNING"
     assert "marker" in mission.node_states()[-1].feedback
     assert run(stage, mission, 1.0) == "FAILURE"

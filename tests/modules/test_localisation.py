@@ -129,6 +129,7 @@ def test_interface_0_never_moves_more_than_v_dt_when_2_is_written(make_rig: Any)
         box.post("operator", post((k - 1) * DT_S, (math.sin(k) * 40, math.cos(k) * 40, k * 1.0), -1))
         drive(rig, local, range(k, k + 1))
         assert math.dist(before[:2], planar(rig.newest(DR))[:2]) <= V_MPS * DT_S + 1e-9
+    assert rig.newest(POST).stamp_s == pytest.approx(198 * DT_S), "each post was taken"
 
 
 def test_a_laser_pose_puts_the_laser_where_it_says(make_rig: Any) -> None:

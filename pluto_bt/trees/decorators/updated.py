@@ -66,5 +66,3 @@ class WaitValueUpdate(EntryUpdated):
     """RUNNING while the entry has not been written since the last look."""
 
     OTHERWISE = RUNNING
-
-

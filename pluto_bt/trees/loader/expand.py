@@ -68,6 +68,8 @@ class Expansion:
             what = "the mission has too many nodes"
             self._report.error(element.place, "too-many-nodes", what, expected=f"at most {MAX_NODES}", found="more", mend="SubTrees count each time")
             raise TooManyNodes
+        if self._report.faults.is_full:
+            raise TooManyNodes
         if depth > MAX_DEPTH:
             self._report.error(element.place, "too-deep", "nodes are nested too deeply", expected=f"at most {MAX_DEPTH} levels", found="more")
             raise TooManyNodes

@@ -10,6 +10,7 @@ from pluto_bt.source import Faults, Place, did_you_mean
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, name_problem
 
+MAX_INCLUDES = 50  # levels
 ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include")
 
 
@@ -154,6 +155,10 @@ class MissionFiles:
         if real in self._open:
             chain = " → ".join(Path(file).name for file in [*self._open[self._open.index(real) :], real])
             self.faults.error(attribute.value_place, "include-cycle", "the file includes itself", expected="no circle", found=chain)
+            return
+        if len(self._open) >= MAX_INCLUDES:
+            what = "files include one another too deeply"
+            self.faults.error(attribute.value_place, "too-deep", what, expected=f"at most {MAX_INCLUDES} levels", found="more")
             return
         if not os.path.isfile(path):
             mend, what = did_you_mean(path.name, _neighbours(path)), f"there is no file {attribute.value!r}"

@@ -102,7 +102,7 @@ def check_mission(
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
-    """The expanded main tree, without making nodes: what `pluto tree` draws. Raises MissionError."""
+    """The expanded main tree, without making nodes, for drawing. Raises MissionError."""
     reading = _read(text_or_path, nodes, None, tree=tree, ports=None, topics=None, file=file, plugins=())
     if reading.report.stops_loading or reading.plan is None:
         raise MissionError(reading.report.faults.in_order())
@@ -124,9 +124,12 @@ def _read(
     faults = Faults()
     reading = Reading(MissionFiles(faults), node_types(nodes, plugins), Board(topics), Report(faults))
     _read_files(reading, text_or_path, file, models)
-    if reading.files.root is None or faults.has_errors:
+    if reading.files.root is None:
         return reading
+    is_whole = not faults.has_errors  # a tree of a file that could not be read must not be called unknown
     StaticCheck(reading.files, reading.types, reading.report).run()
+    if not is_whole:
+        return reading
     reading.main = _main_tree(reading, tree)
     if reading.main is None:
         return reading

@@ -71,7 +71,6 @@ def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[s
         nodes: classes of leaves (py_trees' `BehaviourWithPorts`), or of our own ControlNode and DecoratorNode.
         plugins: modules to import first; what they define is registered by that.
     """
-    importlib.import_module("pluto_bt.behaviours.catalogue")  # the library's own leaves register themselves
     for plugin in plugins:
         importlib.import_module(plugin)
     registry = get_ports_registry()

@@ -16,6 +16,7 @@ from pluto_bt.trees.ports import PortModel, range_problem
 from pluto_bt.trees.script import ScriptSyntaxError, parse_script
 from pluto_bt.trees.values import BOOL, INT, SCRIPT, STATUS, STRING, has_trailing_text
 
+MAX_VALUE = 100_000  # characters of one attribute
 TOOL_ATTRIBUTES = ("_description", "_uid", "_fullpath", "_autoremap")
 
 
@@ -36,10 +37,21 @@ class StaticCheck:
             what = f"tree {tree.tree_id!r} has the name of a node type"
             self._report.error(attribute.value_place, "id-is-node", what, expected="another ID", found=tree.tree_id)
         waiting = list(reversed(tree.element.children))
-        while waiting:
+        while waiting and not self._report.faults.is_full:
             element = waiting.pop()
-            self._check_element(element)
+            if self._is_readable(element):
+                self._check_element(element)
             waiting.extend(reversed(element.children))
+
+    def _is_readable(self, element: XmlElement) -> bool:
+        """False, and a fault, if a value is so long that looking into it would take seconds."""
+        for attribute in element.attributes.values():
+            if len(attribute.value) > MAX_VALUE:
+                what = f'the value of "{attribute.name}" is too long'
+                most, found = f"at most {MAX_VALUE} characters", str(len(attribute.value))
+                self._report.error(attribute.value_place, "too-long", what, expected=most, found=found)
+                return False
+        return True
 
     def _check_element(self, element: XmlElement) -> None:
         self._check_conditions(element)
@@ -128,7 +140,7 @@ class StaticCheck:
             what = f"<{element.tag}> takes no ID"
             self._report.error(place, "id-in-compact-form", what, expected="no ID", mend='name="…" gives it a name of its own')
         for attribute in element.attributes.values():
-            if is_port_name(attribute.name):
+            if is_port_name(attribute.name) and not self._report.faults.is_full:
                 self._check_port(attribute, node_type)
         self._check_private(element)
         for port in node_type.ports.values():
@@ -225,5 +237,3 @@ def _mend_literal(text: str, problem: str) -> str:
     if bare != text and bare:
         return "remove the blanks"
     return f"{problem}; {{{text}}} would read an entry" if text.isidentifier() else problem
-
-

@@ -17,6 +17,7 @@ from pluto_bt.trees.script.terms import Assignment, Chain, Choice, Comparison, E
 from pluto_bt.trees.script.tokens import ScriptSyntaxError, Token, tokens_of
 
 MAX_DEPTH: Final = 50
+MAX_CHARACTERS: Final = 100_000
 ASSIGNMENTS: Final = (":=", "=", "+=", "-=", "*=", "/=")
 COMPARISONS: Final = ("==", "!=", "<", ">", "<=", ">=")
 LEVELS: Final = (("||",), ("&&",), COMPARISONS, ("|", "^"), ("&",), ("+", "-", ".."), ("*", "/"))
@@ -37,24 +38,20 @@ class Program:
             value = statement.value(env)
         return value
 
-    def terms(self) -> Iterator[Term]:
-        """Every term, outer ones first."""
-        waiting = list(reversed(self.statements))
-        while waiting:
-            term = waiting.pop()
-            yield term
-            waiting.extend(reversed(list(term.parts())))
-
 
 @lru_cache(maxsize=4096)
 def parse_script(text: str) -> Program:
     """The program of a script. Raises ScriptSyntaxError with the position."""
     if text == "":
         return Program(text, ())
+    if len(text) > MAX_CHARACTERS:
+        raise ScriptSyntaxError(MAX_CHARACTERS, "the script is too long", expected=f"at most {MAX_CHARACTERS} characters", found=str(len(text)))
     return Program(text, tuple(_Parser(text).script()))
 
 
 class _Parser:
+    """One reading: the tokens, and how far it has come."""
+
     def __init__(self, text: str) -> None:
         self._tokens = tokens_of(text)
         self._at = 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
@@ -23,9 +23,6 @@ class Term(Protocol):
     def value(self, env: Env) -> Any:
         """The value here and now; raises ScriptError."""
 
-    def parts(self) -> Iterator[Term]:
-        """The terms directly inside."""
-
 
 @dataclass(frozen=True, slots=True)
 class Literal:
@@ -36,10 +33,6 @@ class Literal:
     def value(self, env: Env) -> Any:
         """Itself."""
         return self.content
-
-    def parts(self) -> Iterator[Term]:
-        """None."""
-        return iter(())
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,10 +50,6 @@ class Name:
         if entry is None:
             raise ScriptError(f"unknown name {self.name!r}")
         return entry.value
-
-    def parts(self) -> Iterator[Term]:
-        """None."""
-        return iter(())
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +73,6 @@ class Unary:
             raise ScriptError("'~' needs a number of 64 bits")
         return float(~int(real))
 
-    def parts(self) -> Iterator[Term]:
-        """The operand."""
-        yield self.operand
-
 
 @dataclass(frozen=True, slots=True)
 class Chain:
@@ -102,12 +87,6 @@ class Chain:
         for sign, term in self.rest:
             value = combine(sign, value, term.value(env))
         return value
-
-    def parts(self) -> Iterator[Term]:
-        """The operands."""
-        yield self.first
-        for _, term in self.rest:
-            yield term
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,12 +106,6 @@ class Comparison:
             left = right
         return 1.0
 
-    def parts(self) -> Iterator[Term]:
-        """The operands."""
-        yield self.first
-        for _, term in self.rest:
-            yield term
-
 
 @dataclass(frozen=True, slots=True)
 class Choice:
@@ -149,10 +122,6 @@ class Choice:
             raise ScriptError("the condition of '?' is no number")
         real = number_of_text(value, {}) if isinstance(value, str) else number(value, "the condition of '?'")
         return (self.then if real != 0.0 else self.otherwise).value(env)
-
-    def parts(self) -> Iterator[Term]:
-        """Condition and both branches."""
-        yield from (self.condition, self.then, self.otherwise)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +142,3 @@ class Assignment:
             entry = env.scope.declare(key, None)
         value = self.right.value(env)
         return assign(key, entry, value, env.enums) if self.sign in (":=", "=") else update(key, entry, self.sign, value)
-
-    def parts(self) -> Iterator[Term]:
-        """Target and right side."""
-        yield from (self.target, self.right)

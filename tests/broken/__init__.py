@@ -1,0 +1,1 @@
+"""Broken inputs as tables: what is wrong, and what must be told of it."""

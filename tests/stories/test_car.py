@@ -1,0 +1,83 @@
+"""Stories of the car's trip: it closes its loop wherever the markers hang, and something in its way ends the trip."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+import sim.worlds
+from pluto_bt.scenario import Play, Run
+
+CORRIDOR = (Path(sim.worlds.__file__).parent / "corridor.xml").read_text(encoding="utf-8")
+ROBOT = '<robot name="car"'
+MARKERS = {  # where they hang: x, y
+    "in two dense rows": [(x, 0.25 + 0.5 * i) for i in range(39) for x in (0.8, 2.3)],
+    "far apart": [(1.565, 1.5 + 2.5 * i) for i in range(8)],
+    "along both walls": [(0.05 if i % 2 else 3.08, 0.5 + i) for i in range(20)],
+    "along one wall": [(0.05, 0.5 + 1.5 * i) for i in range(13)],
+}
+
+
+@pytest.fixture
+def corridor(tmp_path: Path) -> Path:
+    """The shipped corridor, for changing."""
+    path = tmp_path / "corridor.xml"
+    path.write_text(CORRIDOR, encoding="utf-8")
+    return path
+
+
+def trip(scenario: Play, world: Path, loops: int, seed: int) -> Run:
+    ports = {"max_loops": loops}
+    return scenario(str(world), mission="trip2.xml", platform="car", start="0.5,12,90", ports=ports, seed=seed, max_time_s=90.0 * loops)
+
+
+@pytest.mark.parametrize("seed", [3, 8, 21])
+def test_the_trip_closes_its_loop_again_and_again(scenario: Play, corridor: Path, seed: int) -> None:
+    run = trip(scenario, corridor, 5, seed)
+    assert (run.result, run.reason, run.collisions) == ("SUCCESS", "", 0), run.text
+    assert run.blackboard["loops"] == 5
+    assert run.min_clearance_m > 0.2
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.15
+
+
+@pytest.mark.parametrize("where", MARKERS)
+def test_the_markers_may_hang_elsewhere(scenario: Play, corridor: Path, where: str) -> None:
+    bare = "\n".join(line for line in CORRIDOR.splitlines() if "<marker" not in line)
+    hung = "".join(f'<marker id="{i}" x="{x}" y="{y:g}" theta_deg="90"/>' for i, (x, y) in enumerate(MARKERS[where]))
+    corridor.write_text(bare.replace(ROBOT, hung + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 2, 5)
+    assert (run.result, run.collisions, run.blackboard["loops"]) == ("SUCCESS", 0, 2), run.text
+
+
+@pytest.mark.parametrize(("t_s", "x_m", "y_m"), [(5, 0.5, 16), (20, 0.6, 9), (44, 0.5, 7)])
+def test_something_put_in_its_way_ends_the_trip(scenario: Play, corridor: Path, t_s: int, x_m: float, y_m: float) -> None:
+    script = f'<script><at t="{t_s}"><place id="box" x="{x_m}" y="{y_m}"/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 3, 1)
+    assert (run.result, run.reason, run.exit_code) == ("FAILURE", "hindered", 1)
+    assert run.collisions == 1, "it has no sensor that could see the box: it drives up to it once, and not again"
+    met_s = run.contacts[0]["t_s"]
+    assert run.sim_time_s - met_s < 5.0
+    assert math.dist(run.at(met_s + 0.1).pose[:2], run.final_pose[:2]) < 0.05
+    assert run.runner.system.simulator.velocity == pytest.approx((0.0, 0.0), abs=1e-3)
+
+
+# for twenty seconds of the second step: device, kind, and the word with which the trip ends ("" = it goes on)
+FAULTS = [
+    ("marker", "off", ""), ("marker", "frozen", ""), ("marker", "nan", ""), ("marker", "garbage", ""), ("marker", "late", ""),
+    ("speed", "off", "no-pose"), ("speed", "nan", "no-pose"), ("speed", "stuck", ""),
+    ("imu", "off", "no-pose"), ("imu", "nan", "no-pose"), ("base", "blocked", "hindered"), ("base", "off", "base-lost"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("device", "kind", "ends"), FAULTS)
+def test_a_fault_of_its_own_sensors_never_drives_it_into_a_wall(scenario: Play, corridor: Path, device: str, kind: str, ends: str) -> None:
+    more = ' delay="2"' if kind == "late" else ""
+    script = f'<script><at t="20"><fault device="{device}" kind="{kind}"{more} for="20"/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 2, 2)
+    assert run.collisions == 0
+    assert run.reason == ends, run.text
+    assert run.exit_code == {"": 0, "base-lost": 3}.get(ends, 1)
