@@ -47,6 +47,11 @@ class Surroundings:
             self.map.covered[:] = 0
             self.openings = Openings(self.map)
 
+    def warm(self) -> None:
+        """Use every kernel once, so that no later use waits for its compilation. For a memory that is then thrown away."""
+        self.map.warm()
+        self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
+
     def look(self, robot: Robot, now_s: float) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is."""
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")

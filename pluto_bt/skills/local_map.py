@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.blackboard.messages import LaserScan
+from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, clearances, mark_ground, mark_level
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
@@ -111,6 +111,14 @@ class LocalMap:
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
                         self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
             self._changed(x, y, reach_m)
+
+    def warm(self) -> None:
+        """Take a level scan and one that looks down, and forget both."""
+        scan = LaserScan(0.0, -0.1, 0.1, read_only((1.0, 1.0, 1.0)), 3)
+        for tilt_rad in (0.0, 0.2):
+            self.add(scan, (0.0, 0.0, 0.0), 0.5, tilt_rad)
+        self.refresh(0.0)
+        self.forget((0.0, 0.0, 0.0))
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""

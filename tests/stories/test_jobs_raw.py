@@ -35,6 +35,7 @@ class Robot:
         self.system.board.on_change("motion/status", self._note)
         self.system.executive.core.start(self.runner.mission)
         self.system.start_parts()
+        self.system.scheduler.start()
         self.system.scheduler.run_until(NS // 2)
 
     @property
