@@ -100,5 +100,6 @@ class Guard:
 
         core = self._system.executive.core
         trees = [activity.mission for activity in (core.active, core.job) if activity is not None]
-        if not any([tree.replace_step(name, step if kind else None) for tree in trees]):
+        found = [tree.replace_step(name, step if kind else None) for tree in trees]  # in all of them, not only in the first
+        if True not in found:
             self._system.say("warning", "unknown-leaf", "world", f'the world script names no leaf of this mission: "{name}"')

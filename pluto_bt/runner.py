@@ -25,7 +25,6 @@ from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 
-
 USES_THE_MAP = (WristTour, FindPath)
 
 

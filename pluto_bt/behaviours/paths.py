@@ -24,6 +24,7 @@ SIDES: Final = ("none", "left", "right", "both")
 NEW_POINT_M: Final = 0.6  # a goto point that moves less is not worth a new command
 POINT_TOLERANCE_M: Final = 0.4
 NEW_HEADING_RAD: Final = math.radians(8.0)
+REFRESH_S: Final = 2.0
 SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on
 GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
 
@@ -99,6 +100,7 @@ class FollowRay(MotionLeaf):
         self._following.begin(around.way, self._find, now_s, around.robot)
         self._point: Pair | None = None
         self._heading_rad: float | None = None
+        self._turn_sent_s = now_s
         return self.follow(robot)
 
     def resume(self, robot: Robot) -> None:
@@ -152,8 +154,9 @@ class FollowRay(MotionLeaf):
     def _turn(self, robot: Robot, around: Surroundings, heading_rad: float) -> Status:
         """Turn on the spot to a heading."""
         heading_rad = around.heading_in_map(heading_rad)
-        if self._heading_rad is None or abs(math.remainder(heading_rad - self._heading_rad, math.tau)) > NEW_HEADING_RAD:
-            self._heading_rad, self._point = heading_rad, None
+        is_new = self._heading_rad is None or abs(math.remainder(heading_rad - self._heading_rad, math.tau)) > NEW_HEADING_RAD
+        if is_new or self._last_s - self._turn_sent_s > REFRESH_S:  # drive would time out
+            self._heading_rad, self._point, self._turn_sent_s = heading_rad, None, self._last_s
             self.post(robot, CommandType.REGULATOR, (0.0, heading_rad))
         return self.wait("turning to the path")
 

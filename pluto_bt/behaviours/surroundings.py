@@ -29,7 +29,7 @@ class Surroundings:
     def __init__(self, platform: Platform, parameters: MotionParameters) -> None:
         self.parameters = parameters
         self.map = LocalMap(parameters)
-        self.ways = Ways(self.map, outline_of(platform.body.outline_m).side_m)
+        self.ways = Ways(self.map, outline_of(platform.body.outline_m))
         self.openings = Openings(self.map)
         self.rectangle: Rectangle | None = None  # in Localization/Pose
         self._laser = platform.devices.laser

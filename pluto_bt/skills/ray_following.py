@@ -25,6 +25,8 @@ STUCK_S, STUCK_M = 8.0, 0.4  # who has not come so far in so long is stuck
 END_M = 0.6  # so near to its end a way is done
 TURN_RAD = math.radians(70.0)  # a way that leads so far aside is turned to on the spot
 TURNED_RAD = math.radians(25.0)
+TURNING_S, TURNING_RAD = 4.0, math.radians(4.0)  # who has turned less in so long cannot turn here: goto has to find a way out
+NO_TURN_S = 12.0  # and does so for so long
 AHEAD_S = 0.8  # where the robot will be after so long must lie inside the rectangle
 
 GO, TURN, DONE, OPENING, BLOCKED, LOST = "go", "turn", "done", "opening", "blocked", "lost"
@@ -55,6 +57,7 @@ class RayFollowing:
         self._found_s = now_s
         self._mark, self._mark_s = robot[:2], now_s
         self._is_turning = False
+        self._turn_mark_rad, self._turn_mark_s, self._may_turn_s = robot[2], now_s, now_s
 
     def step(self, now_s: float, robot: Planar, speed_mps: float, rectangle: Rectangle | None) -> Advice:
         """What to do now."""
@@ -68,7 +71,7 @@ class RayFollowing:
             return Advice(DONE, text="the end of the path")
         point = self._point_ahead(robot, self._ahead_m)
         heading_rad = math.atan2(point[1] - robot[1], point[0] - robot[0])
-        if self._must_turn(robot, heading_rad, speed_mps, rectangle):
+        if self._must_turn(robot, heading_rad, speed_mps, rectangle) and self._can_turn(now_s, robot):
             return Advice(TURN, point, heading_rad)
         side = "" if self._knows_the_way() else self._openings.look(robot, heading_rad)
         return Advice(OPENING, point, heading_rad, side, f"an opening on the {side}") if side else Advice(GO, point, heading_rad)
@@ -117,6 +120,15 @@ class RayFollowing:
         x, y = robot[0] + AHEAD_S * speed_mps * math.cos(robot[2]), robot[1] + AHEAD_S * speed_mps * math.sin(robot[2])
         leaves = rectangle is not None and rectangle.depth_m(x, y) < min(0.0, rectangle.depth_m(robot[0], robot[1]))
         self._is_turning = off_rad > (TURNED_RAD if self._is_turning else TURN_RAD) or (leaves and off_rad > TURNED_RAD)
+        return self._is_turning
+
+    def _can_turn(self, now_s: float, robot: Planar) -> bool:
+        """False for a while where turning makes no headway: something stands too near."""
+        if abs(wrap(robot[2] - self._turn_mark_rad)) > TURNING_RAD or now_s - self._turn_mark_s > 2.0 * TURNING_S:
+            self._turn_mark_rad, self._turn_mark_s = robot[2], now_s
+        elif now_s - self._turn_mark_s > TURNING_S:
+            self._may_turn_s = now_s + NO_TURN_S
+        self._is_turning = now_s >= self._may_turn_s
         return self._is_turning
 
     def _knows_the_way(self) -> bool:

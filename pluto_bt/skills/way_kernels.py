@@ -85,12 +85,13 @@ def is_worth(i: int, j: int, covered: Bytes, evidence: Bytes, rectangle: Array) 
 @kernel
 def search(
     evidence: Bytes, covered: Bytes, clearance: Floats, start: tuple[int, int], goal: tuple[int, int], goal_reach: float, rectangle: Array,
-    least: float, half: float, wide: float, relaxed: float, cost: Floats, came: Counts, keys: Floats, places: Counts,
+    least: float, half: float, wide: float, relaxed: float, room: float, cost: Floats, came: Counts, keys: Floats, places: Counts,
 ) -> int:  # fmt: skip
     """The cheapest way from `start` to within `goal_reach` of `goal`, or (goal_reach < 0) to the nearest place worth covering.
 
     Args:
         least: clearance without which nothing passes, except within `relaxed` of start and goal.
+        room: clearance that a place worth covering must have, so that the robot can turn there.
         half: clearance of an open path; narrower costs more. wide: clearance from which on more is not better.
         cost, came, keys, places: working memory; `came` holds the way back, place by place.
     Returns: the place where the way ends, or -1.
@@ -112,7 +113,7 @@ def search(
         if goal_reach >= 0.0:
             if math.hypot(goal[0] - i, goal[1] - j) <= goal_reach:
                 return at
-        elif is_worth(i, j, covered, evidence, rectangle):
+        elif clearance[i, j] >= room and is_worth(i, j, covered, evidence, rectangle):
             return at
         for di in range(-1, 2):
             for dj in range(-1, 2):

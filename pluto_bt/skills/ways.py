@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from pluto_bt.skills.local_map import CELLS, LocalMap
-from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.way_kernels import search
 
+TURNING_GAP_M = 0.15  # what must be left around a robot that turns on the spot
 RELAXED_M = 1.2  # so near to its start and its goal a way may be tighter and nearer to the edge of the rectangle
 BEYOND_M = 3.0  # a goal beyond the map is reached for now if the edge of the map is reached so near to it
 
@@ -32,10 +33,10 @@ class Way:
 class Ways:
     """Finds ways; keeps the working memory of the search."""
 
-    def __init__(self, map: LocalMap, half_body_m: float) -> None:
-        p = map.parameters
+    def __init__(self, map: LocalMap, outline: Outline) -> None:
         self.map = map
-        self.least_m = half_body_m + p.side_gap_m
+        self.least_m = outline.side_m + map.parameters.side_gap_m
+        self.room_m = max(self.least_m, outline.reach_m + TURNING_GAP_M)
         self._cost = np.zeros(CELLS * CELLS, dtype=np.float32)
         self._came = np.zeros(CELLS * CELLS, dtype=np.int32)
         self._keys = np.zeros(2 * CELLS * CELLS, dtype=np.float32)
@@ -73,7 +74,7 @@ class Ways:
         wide, relaxed = max(map.far_cells, half), RELAXED_M / map.cell_m
         end = search(
             map.evidence, map.covered, map.clearance, map.cell(robot[0], robot[1]), map.cell(*goal), reach_cells, self._in_cells(rectangle),
-            least, half, wide, relaxed, self._cost, self._came, self._keys, self._places,
+            least, half, wide, relaxed, self.room_m / map.cell_m, self._cost, self._came, self._keys, self._places,
         )  # fmt: skip
         return None if end < 0 else self._traced(end)
 
