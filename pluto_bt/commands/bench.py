@@ -13,6 +13,7 @@ BENCHES = {
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
     "tick": "a tick of the tree against stock py_trees",
     "patrols": "patrols over random courses in places nobody tuned to",
+    "movement": "moveto, explore and investigate in worlds drawn at random",
     "repeat": "runs with one seed: equal traces",
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",

@@ -10,7 +10,9 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+Mask = NDArray[np.bool_]
 CELL_M = 0.5
 NEEDED_M = 1.2
 
@@ -78,7 +80,7 @@ def _axis(rng: np.random.Generator, blocks: int) -> list[float]:
     return [*places, at + rng.uniform(4.0, 9.0)]
 
 
-def _free(width: float, height: float, solids: list[tuple[float, float, float, float]], posts: np.ndarray) -> np.ndarray:
+def _free(width: float, height: float, solids: list[tuple[float, float, float, float]], posts: NDArray[np.float64]) -> Mask:
     """Which cells keep NEEDED_M from everything."""
     x, y = np.meshgrid(np.arange(0.0, width, CELL_M), np.arange(0.0, height, CELL_M), indexing="ij")
     near = np.minimum(np.minimum(x, width - x), np.minimum(y, height - y))
@@ -90,20 +92,21 @@ def _free(width: float, height: float, solids: list[tuple[float, float, float, f
     return near > NEEDED_M
 
 
-def _ends(rng: np.random.Generator, free: np.ndarray) -> tuple[tuple[float, float], tuple[float, float], float] | None:
+def _ends(rng: np.random.Generator, free: Mask) -> tuple[tuple[float, float], tuple[float, float], float] | None:
     cells = np.argwhere(free)
     if not len(cells):
         return None
-    first = tuple(int(v) for v in cells[rng.integers(len(cells))])
+    i, j = cells[rng.integers(len(cells))].tolist()
+    first = (int(i), int(j))
     steps = _steps(free, first)
     far = np.argwhere(steps > 25.0 / CELL_M)
     if not len(far):
         return None
-    last = far[rng.integers(len(far))]
-    return (first[0] * CELL_M, first[1] * CELL_M), (last[0] * CELL_M, last[1] * CELL_M), float(steps[tuple(last)]) * CELL_M
+    a, b = far[rng.integers(len(far))].tolist()
+    return (first[0] * CELL_M, first[1] * CELL_M), (a * CELL_M, b * CELL_M), float(steps[a, b]) * CELL_M
 
 
-def _steps(free: np.ndarray, start: tuple[int, ...]) -> np.ndarray:
+def _steps(free: Mask, start: tuple[int, int]) -> NDArray[np.int_]:
     """Steps from the start to each free cell, -1 = none."""
     steps = np.full(free.shape, -1)
     steps[start] = 0
@@ -117,7 +120,7 @@ def _steps(free: np.ndarray, start: tuple[int, ...]) -> np.ndarray:
     return steps
 
 
-def _walker(rng: np.random.Generator, free: np.ndarray, k: int) -> str:
+def _walker(rng: np.random.Generator, free: Mask, k: int) -> str:
     cells = np.argwhere(free)
     i, j = cells[rng.integers(len(cells))]
     angle = rng.uniform(0.0, math.tau)

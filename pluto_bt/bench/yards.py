@@ -7,9 +7,11 @@ from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LocalMapState
 
+Mask = NDArray[np.bool_]
 CELL_M = 0.25
 BODY_M = 0.75  # ground that the middle of the robot can reach keeps so far from everything
 COVERED = 2
@@ -22,7 +24,7 @@ class Yard:
     text: str
     start: tuple[float, float, float]
     rectangle: tuple[float, float]
-    reachable: np.ndarray
+    reachable: Mask
 
     @classmethod
     def make(cls, seed: int) -> Yard:
@@ -37,7 +39,8 @@ class Yard:
             x, y, sx, sy = rng.uniform(5.0, width - 1.0), rng.uniform(1.0, height - 1.0), rng.uniform(0.3, 4.0), rng.uniform(0.3, 4.0)
             box = (x, y, min(x + sx, width), min(y + sy, height))
             boxes.append(box)
-            shapes.append(f'<polygon id="s{k}">{box[0]:.2f},{box[1]:.2f} {box[2]:.2f},{box[1]:.2f} {box[2]:.2f},{box[3]:.2f} {box[0]:.2f},{box[3]:.2f}</polygon>')
+            x0, y0, x1, y1 = box
+            shapes.append(f'<polygon id="s{k}">{x0:.2f},{y0:.2f} {x1:.2f},{y0:.2f} {x1:.2f},{y1:.2f} {x0:.2f},{y1:.2f}</polygon>')
         text = f'<world name="yard{seed}" seed="{seed}">' + "".join(shapes)
         text += f'<robot platform="atrv2" x="{start[0]:.2f}" y="{start[1]:.2f}" theta_deg="0"/></world>'
         return cls(text, start, rectangle, _reachable(width, height, boxes, start, rectangle))
@@ -51,7 +54,7 @@ class Yard:
         return float(np.count_nonzero(cells[i[inside], j[inside]] == COVERED)) / len(x)
 
 
-def _reachable(width: float, height: float, boxes: list[tuple[float, ...]], start: tuple[float, ...], rectangle: tuple[float, float]) -> np.ndarray:
+def _reachable(width: float, height: float, boxes: list[tuple[float, ...]], start: tuple[float, ...], rectangle: tuple[float, float]) -> Mask:
     x, y = np.meshgrid(np.arange(0.0, width, CELL_M) + CELL_M / 2, np.arange(0.0, height, CELL_M) + CELL_M / 2, indexing="ij")
     near = np.full(x.shape, math.inf)
     for x0, y0, x1, y1 in boxes:
