@@ -18,6 +18,16 @@ class HeadingSource(Protocol):
         """(turn in rad, True if the sensor measured it). `theta_rad` None = the sensor says nothing now."""
 
 
+class WheelHeading:
+    """The wheels alone: no sensor is asked (the jBot article with `yaw_enable` off)."""
+
+    __slots__ = ()
+
+    def turn(self, dt_s: float, wheel_turn_rad: float, theta_rad: float | None, bias_known: bool = True) -> tuple[float, bool]:
+        """The wheels' turn, and False."""
+        return wheel_turn_rad, False
+
+
 class GyroHeading:
     """Heading since the start from an integrated gyro: its changes count, its value does not.
 

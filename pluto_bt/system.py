@@ -44,6 +44,7 @@ MODULES: tuple[Module, ...] = (
     Module("marker",    "pluto_bt.modules.marker:Marker",         0.1,    "io",         device="marker", needs=("local",),              budget_ms=1.0),
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
            wakes=("ATRV2/Drive/Raw", "sick/timing")),
+    Module("alarms",    "pluto_bt.modules.alarms:Alarms",         0.05,   "estimation", needs=("base",),                                budget_ms=1.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
@@ -52,7 +53,9 @@ MODULES: tuple[Module, ...] = (
 )
 # fmt: on
 
-INBOXES = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": ""}  # link -> the link above, which owns its inbox
+INBOXES = {  # link -> the link above, which owns its inbox
+    "base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": "", "alarms": "",
+}  # fmt: skip
 
 
 @dataclass

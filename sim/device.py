@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+from collections.abc import Callable
 
 from drivers.records import Record
 from sim.motors import Motors
@@ -42,7 +43,12 @@ class BaseDevice(Device):
     def __init__(self, name: str, time: SimTime, motors: Motors) -> None:
         super().__init__(name, time)
         self._motors = motors
+        self.on_calibrate: Callable[[float, float], None] = lambda counts_per_m, effective_track_m: None
 
     def drive(self, speed_mps: float, turn_rate_radps: float) -> None:
         """Set the targets of the motors, robot frame; held within the platform's limits."""
         self._motors.drive(speed_mps, turn_rate_radps)
+
+    def calibrate(self, counts_per_m: float, effective_track_m: float) -> None:
+        """From now on the base makes metres and radians of its counts with these figures; distance and heading so far stay."""
+        self.on_calibrate(counts_per_m, effective_track_m)

@@ -17,10 +17,13 @@ class Ground:
         sensors = ("gps", "marker", "compass")
         self._shadows = {sensor: Regions([s.points for s in world.shadows if s.sensor == sensor]) for sensor in sensors}
 
-    def slip(self, x_m: float, y_m: float) -> float:
+    def slip(self, x_m: float, y_m: float, backwards: bool = False) -> float:
         """The share of wheel motion that is lost, 0 … 1."""
         inside = self._regions.at(x_m, y_m)
-        return self._terrains[inside[-1]].slip if inside else 0.0
+        if not inside:
+            return 0.0
+        terrain = self._terrains[inside[-1]]
+        return terrain.slip if terrain.slip_back is None or not backwards else terrain.slip_back
 
     def magnetic_rad(self, x_m: float, y_m: float) -> float:
         """How far iron in the ground turns a compass needle."""

@@ -77,7 +77,9 @@ class Outfit:
         s, devices = self._setting, robot.devices
         base = self.devices["base"] = BaseDevice("base", s.time, s.body.motors)
         track_m = robot.body.effective_track_m or robot.body.track_m
-        self._fit("odometry", OdometrySensor(devices.odometry, track_m, s.body, s.noise("odometry"), s.ideal), base)
+        odometry = OdometrySensor(devices.odometry, track_m, s.body, s.noise("odometry"), s.ideal)
+        base.on_calibrate = odometry.calibrate
+        self._fit("odometry", odometry, base)
         if devices.bumpers:
             self._fit("bumpers", BumperSensor(devices.bumpers, s.outline, s.body, s.around, s.travel, s.ideal), base)
         if devices.sonar:

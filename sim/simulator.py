@@ -76,7 +76,7 @@ class Simulator:
         """Plain motion under one command on one ground."""
         slip = self._faults.slip
         if self._slips:
-            slip = max(slip, self._ground.slip(self._body.x_m, self._body.y_m))
+            slip = max(slip, self._ground.slip(self._body.x_m, self._body.y_m, self._body.wheel_speed_mps < 0.0))
         self._travel.advance((until_ns - self._time.now_ns) // TICK_NS, slip, self._faults.blocked)
 
     def _happen(self) -> None:

@@ -130,6 +130,12 @@ def test_the_last_terrain_of_the_file_is_on_top() -> None:
     assert [ground.slip(x, 0.0) for x in (0.0, 1.5, 5.0)] == [0.4, 0.1, 0.0]
 
 
+def test_a_trunk_lets_go_of_who_backs() -> None:
+    ground = slope(slip=1.0, slip_back=0.6)
+    assert [ground.slip(0.0, 0.0, backwards) for backwards in (False, True)] == [1.0, 0.6]
+    assert ground.slip(1.5, 0.0, True) == 0.1, "elsewhere the direction does not matter"
+
+
 @settings(max_examples=40, deadline=None)
 @given(target=st.floats(-2.0, 2.0), rate=st.floats(0.05, 2.0), acceleration=st.floats(0.1, 5.0), turn_back=st.floats(-1.0, 1.0))
 def test_the_wrist_reaches_its_target_within_its_limits(target: float, rate: float, acceleration: float, turn_back: float) -> None:

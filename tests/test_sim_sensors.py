@@ -179,6 +179,19 @@ def test_an_inertial_sensor_feels_turning_speeding_up_and_gravity() -> None:
     assert math.isnan(of_type(sim.devices["dmu"].read(), InertialRecord)[-1].theta_rad)
 
 
+def test_the_angles_of_an_orientation_sensor_wander_slowly() -> None:
+    figures = Inertial(absolute=True, angle_wander_deg=1.0, angle_wander_s=10.0)
+    errors = []
+    for seed in range(30):
+        sim = run(Simulator(World("w"), cart(imu=figures), seed), 40.0)
+        errors.append([record.theta_rad for record in of_type(sim.devices["imu"].read(), InertialRecord)])
+    angles = np.degrees(np.array(errors))
+    assert np.std(angles) == pytest.approx(1.0, rel=0.25), "at any time, also at the start"
+    assert np.std(angles[:, 0]) == pytest.approx(1.0, rel=0.5)
+    steps = angles[:, 50:] - angles[:, :-50]  # over a second
+    assert np.std(steps) == pytest.approx(math.sqrt(2.0 * (1.0 - math.exp(-0.1))), rel=0.15)
+
+
 def test_a_slope_is_felt_as_tilt() -> None:
     sim = run(Simulator(World("w", terrains=(Terrain("hill", FIELD, pitch_rad=0.2, roll_rad=-0.1),)), cart(dmu=Inertial()), 0), 1.0)
     last = of_type(sim.devices["dmu"].read(), InertialRecord)[-1]

@@ -10,7 +10,7 @@ from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.codes import GotoStatus
-from pluto_bt.blackboard.messages import BatteryState, BumperState, FVectorState, Pose
+from pluto_bt.blackboard.messages import AlarmState, BatteryState, BumperState, FVectorState, Pose
 from pluto_bt.skills.map_area import MapArea
 
 
@@ -52,17 +52,45 @@ class IsAt(Condition):
 
 
 class IsStuck(Condition):
-    """The last goto ended stuck."""
+    """The robot does not get on: the last goto ended stuck, its wheels turn and it does not (stasis), or its wheels cannot turn.
 
-    INPUT_PORTS = NO_PORTS
+    The alarms of stasis and wheels stay until the Escape tree (or ReadAlarms) has read them.
+    """
+
+    INPUT_PORTS = {"sign": Port(str, False, "which sign counts", "any", choices=("any", "goto", "stasis", "wheels"))}
     OUTPUT_PORTS = NO_PORTS
 
     def ask(self, robot: Robot) -> tuple[bool, str]:
-        """By motion's status."""
-        status = robot.newest("motion/status")
+        """By motion's status and the alarms."""
+        sign = self.get_input("sign")
+        status, alarms = robot.newest("motion/status"), robot.newest("imu/alarms")
+        if isinstance(alarms, AlarmState) and not robot.is_stale("imu/alarms"):
+            if alarms.stasis and sign in ("any", "stasis"):
+                return True, "the wheels turn, the robot does not"
+            if alarms.wheels_stuck and sign in ("any", "wheels"):
+                return True, "the wheels are commanded and stand still"
+        elif sign in ("stasis", "wheels"):
+            return False, "no alarms known"
+        if sign not in ("any", "goto"):
+            return False, "free"
         if not isinstance(status, FVectorState) or robot.is_stale("motion/status"):
             return False, "no status"
         return status.element[1] == GotoStatus.STUCK, status.reason
+
+
+class IsTilted(Condition):
+    """The robot leans from the vertical, in any direction, by more than `limit_deg`."""
+
+    INPUT_PORTS = {"limit_deg": Port(float, False, "the limit; 0 = the platform's (alarms.tilt_limit_deg)", 0.0, unit="deg", ge=0.0, le=180.0)}
+    OUTPUT_PORTS = NO_PORTS
+
+    def ask(self, robot: Robot) -> tuple[bool, str]:
+        """By the orientation sensor."""
+        alarms, limit_deg = robot.newest("imu/alarms"), float(self.get_input("limit_deg"))
+        if not isinstance(alarms, AlarmState) or robot.is_stale("imu/alarms"):
+            return False, "no tilt known"
+        tilt_deg = math.degrees(alarms.tilt_rad)
+        return (tilt_deg > limit_deg if limit_deg > 0.0 else alarms.tilted), f"leans by {tilt_deg:.0f} deg"
 
 
 class BumperPressed(Condition):

@@ -45,8 +45,9 @@ REASONS: Final[dict[str, Reason]] = {
     "outside-rectangle": Reason("the goal or the start is outside the rectangle", "choose a goal inside, or set another rectangle"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
     "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
-    "stuck": Reason("goto comes no nearer to its goal", "choose a goal with a clear way, or plan the way with NavigateTo"),
+    "stuck": Reason("goto comes no nearer to its goal, or the robot cannot free itself", "choose a goal with a clear way, or free it by hand"),
     "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near"),
+    "tilted": Reason("the robot leans farther than the platform allows", "bring it to level ground"),
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }

@@ -68,6 +68,9 @@ class Robot(Protocol):
     def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
         """What a job of motion shows in `element[2..3]`; None = as it is."""
 
+    def read_alarms(self) -> None:
+        """Take back the alarms of `imu/alarms` that stay until they are read."""
+
     def say(self, text: str) -> None:
         """A line for operators."""
 

@@ -114,6 +114,19 @@ class ImuState(Message, frozen=True, gc=False):
     bias_known: bool = False
 
 
+class AlarmState(Message, frozen=True, gc=False):
+    """A robot in trouble: wheels turn and the body does not (stasis), wheels are commanded and stand still, it leans too far.
+
+    The first two stay until they are read; `tilt_rad` is the angle from the vertical now, `stasis_count` how near the next stasis is.
+    """
+
+    stasis: bool = False
+    wheels_stuck: bool = False
+    tilted: bool = False
+    tilt_rad: float = 0.0
+    stasis_count: int = 0
+
+
 class CompassState(Message, frozen=True, gc=False):
     """Magnetic heading in the map frame (counter-clockwise from x)."""
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from pluto_bt.blackboard.messages import (
     ActuatorState,
+    AlarmState,
     BatteryState,
     BumperState,
     CompassState,
@@ -66,6 +67,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic("dmu/raw",                           ImuState,      "dmu",       0.02,  0.2,  "inertial sensor as measured, z up"),
     Topic("dmu/state",                         ImuState,      "dmu",       0.02,  0.2,  "filtered; theta = rotation since the start, bias removed", history=64),
     Topic("imu/state",                         ImuState,      "imu",       0.02,  0.2,  "orientation sensor (3DM-GX1): absolute angles"),
+    Topic("imu/alarms",                        AlarmState,    "alarms",    0.05,  0.3,  "stasis, stuck wheels (both until read), tilt"),
     Topic("compass/state",                     CompassState,  "compass",   0.1,   1.0,  "magnetic compass"),
     Topic("wrist/command",                     ActuatorState, "wrist",     0.0,   0.0,  "the wrist command accepted last; velocity and acceleration must both be > 0 to move"),
     Topic("wrist/state",                       ActuatorState, "wrist",     0.05,  0.5,  "pan and tilt", history=32),

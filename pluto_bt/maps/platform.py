@@ -104,7 +104,9 @@ class Inertial(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=
     bias_dps: Annotated[NotNegative, Meta(description="standard deviation of the constant bias, drawn once a run")] = 0.0
     noise_dps: Annotated[NotNegative, Meta(description="standard deviation of a turn rate")] = 0.0
     drift_dps_per_sqrt_s: Annotated[NotNegative, Meta(description="random walk of the bias")] = 0.0
-    angle_noise_deg: Annotated[NotNegative, Meta(description="noise of absolute angles")] = 0.0
+    angle_noise_deg: Annotated[NotNegative, Meta(description="noise of absolute angles, from reading to reading")] = 0.0
+    angle_wander_deg: Annotated[NotNegative, Meta(description="standard deviation of the slowly changing error of absolute angles")] = 0.0
+    angle_wander_s: Annotated[Positive, Meta(description="time in which that error changes")] = 10.0
     acceleration_noise_mps2: Annotated[NotNegative, Meta(description="standard deviation of an acceleration")] = 0.0
 
 

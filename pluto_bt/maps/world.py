@@ -115,7 +115,10 @@ class Actor:
 
 @dataclass(frozen=True, slots=True)
 class Terrain:
-    """Ground that slips, tilts or is magnetic. `slip` 0 … 1: the share of wheel motion that is lost."""
+    """Ground that slips, tilts or is magnetic. `slip` 0 … 1: the share of wheel motion that is lost.
+
+    `slip_back`: the same while driving backwards, where it is another (None: it is not): who sits on a trunk gets off the way he came.
+    """
 
     id: str
     points: Points
@@ -124,6 +127,7 @@ class Terrain:
     pitch_rad: float = 0.0
     magnetic_rad: float = 0.0
     place: Place = NOWHERE
+    slip_back: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -222,11 +222,12 @@ class _WorldReading:
 
     def _terrain(self, fields: Fields) -> None:
         name, slip = self._id(fields, "region"), fields.number("slip", 0.0, 0.0, 1.0)
+        slip_back = fields.number("slip_back", 0.0, 0.0, 1.0) if fields.has("slip_back") else None
         roll_rad, pitch_rad = fields.angle_rad("roll_deg", limit_deg=89.0), fields.angle_rad("pitch_deg", limit_deg=89.0)
         magnetic_rad = fields.angle_rad("magnetic_deg", limit_deg=360.0)
         points = self._corners(fields)
         if points is not None:
-            self._found.terrains.append(Terrain(name, points, slip, roll_rad, pitch_rad, magnetic_rad, fields.place))
+            self._found.terrains.append(Terrain(name, points, slip, roll_rad, pitch_rad, magnetic_rad, fields.place, slip_back))
 
     def _actor(self, fields: Fields) -> None:
         name, radius_m = self._id(fields, "obstacle"), fields.number("r", None, 0.0, above=True)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import cast
+
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState
+from pluto_bt.modules.calibration import CalibratedBase, read_calibration
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import RELEASE, Link, newest
 from pluto_bt.skills import reasons
 from pluto_bt.skills.drive import Drive as Skill
 from pluto_bt.skills.drive import DriveParameters, DriveSenses
 from pluto_bt.skills.limits import STILL
+from pluto_bt.source import InputError
 
 AMENDER = "avoid"  # only the upper link amends an order: the same stamp as before
 
@@ -25,10 +30,13 @@ class Drive:
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._sonar = newest(context, "ATRV2/Sonar")
         self._bumper = newest(context, "ATRV2/Bumper")
+        self._devices = context.devices
+        self._say = context.say
 
     def start(self, now_s: float) -> None:
-        """Begin at rest, without a command."""
+        """Calibrate the base; begin at rest, without a command."""
         if not self._link.is_running:
+            self._calibrate()
             self._skill.reset()
             self._link.start()
 
@@ -58,6 +66,18 @@ class Drive:
         self._link.is_running = False
         self._base.stop("drive", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
         self._link.tell(now_s, self._rest(now_s))
+
+    def _calibrate(self) -> None:
+        """Write the calibration file to the base. It was good when the run began; if it no longer is, the base keeps what it has."""
+        file = self._skill.parameters.calibration_file
+        if not file:
+            return
+        try:
+            calibration = read_calibration(Path(file), file)
+        except InputError as error:
+            self._say("error", "bad-calibration", "drive", f"the base keeps its old calibration: {error}")
+            return
+        cast(CalibratedBase, self._devices["base"]).calibrate(calibration.counts_per_m, calibration.effective_track_m)
 
     def _release(self, now_s: float, command: ActuatorState) -> None:
         self._base.stop("drive", now_s)

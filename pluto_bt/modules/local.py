@@ -30,6 +30,7 @@ from pluto_bt.modules.post_box import refusal
 class LocalParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Table `[local]` of the platform file: how wrong a step of dead reckoning may be, and when a setter counts as gone."""
 
+    yaw_enable: Annotated[bool, Meta(description="false: the heading is that of the wheels alone (the jBot article's switch)")] = True
     distance_noise_m_per_sqrt_m: Annotated[float, Meta(ge=0, description="standard deviation of the way after one metre")] = 0.03
     wheel_turn_noise_deg_per_sqrt_deg: Annotated[float, Meta(ge=0, description="of the wheels' heading after one degree of turn")] = 0.75
     wheel_turn_noise_deg_per_sqrt_m: Annotated[float, Meta(ge=0, description="of the wheels' heading after one metre")] = 1.7
@@ -54,7 +55,7 @@ class Local:
         p = context.parameters(LocalParameters)
         self._parameters = p
         self._say = context.say
-        self._sources = MotionSources(context, p.step_noise())
+        self._sources = MotionSources(context, p.step_noise(), p.yaw_enable)
         self._mount = LaserMount(context)
         self._box = context.posts
         self.track = Track(context.start_pose)

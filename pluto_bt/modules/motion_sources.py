@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from estimation.covariance import StepNoise
-from estimation.heading import AbsoluteHeading, GyroHeading, HeadingSource
+from estimation.heading import AbsoluteHeading, GyroHeading, HeadingSource, WheelHeading
 from estimation.odometer import Odometer, SignedSpeed
 from estimation.se2 import Pose2, arc
 from estimation.track import LEVEL, Tilt
@@ -72,10 +72,10 @@ class MotionSources:
     """Joins the way and the heading that this platform has.
 
     The heading is the gyro's (`dmu/state`; until its bias is known the wheels teach it), an absolute sensor's (`imu/state`), or the
-    wheels' where there is neither or it is stale.
+    wheels' where there is neither or it is stale, or where `yaw_enable` is off. The tilt comes from the sensor in any case.
     """
 
-    def __init__(self, context: Context, noise: StepNoise) -> None:
+    def __init__(self, context: Context, noise: StepNoise, yaw_enable: bool = True) -> None:
         devices = context.platform.devices
         is_car = context.platform.body.kinematics == "ackermann" and devices.speed is not None
         self._way: WheelWay | SpeedWay = SpeedWay(context) if is_car else WheelWay(context)
@@ -85,6 +85,8 @@ class MotionSources:
             self._heading, topic = AbsoluteHeading(context.start_pose[2]), "imu/state"
         else:
             self._heading, topic = GyroHeading(teaches=not is_car), "dmu/state"
+        if not yaw_enable:
+            self._heading = WheelHeading()
         self._sensor = context.board.reader(topic)
         self._stale_after_s = STALE_AFTER_S[topic]
 

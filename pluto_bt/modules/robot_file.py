@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import resources
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.polygons import crossing, is_flat
+from pluto_bt.modules.alarms import AlarmsParameters
+from pluto_bt.modules.calibration import read_calibration
 from pluto_bt.modules.dmu import DmuParameters
 from pluto_bt.modules.local import LocalParameters
 from pluto_bt.modules.marker import MarkerParameters
@@ -33,6 +37,7 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     local: LocalParameters = LocalParameters()
     dmu: DmuParameters = DmuParameters()
+    alarms: AlarmsParameters = AlarmsParameters()
     marker: MarkerParameters = MarkerParameters()
 
 
@@ -57,6 +62,8 @@ def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | N
             robot = build(RobotFile, table, lambda path: set_at.get(path) or locate(path), faults)
         if robot is not None:
             _check_body(robot, locate(("body", "outline_m")), faults)
+            key = ("drive", "calibration_file")
+            robot = _with_calibration(robot, name, set_at.get(key) or locate(key), faults)
     faults.raise_errors()
     assert robot is not None  # build gives None only together with a fault
     return robot
@@ -76,6 +83,23 @@ def _text_of(name: str, named_at: Place, faults: Faults) -> str | None:
         place = Place(fault.file, fault.line, fault.column, fault.source_line) if fault.line else named_at
         faults.error(place, fault.code, fault.message, expected=fault.expected, found=fault.found, mend=fault.mend)
     return text
+
+
+def _with_calibration(robot: RobotFile, name: str, place: Place, faults: Faults) -> RobotFile:
+    """The robot with the path of its calibration file, looked for as given, then beside the platform file; a bad file is a fault."""
+    given = robot.drive.calibration_file
+    if not given:
+        return robot
+    path = next((path for path in (Path(given), Path(name).parent / given) if path.is_file()), None)
+    if path is None:
+        faults.error(place, "no-file", f'there is no calibration file "{given}"', expected="a TOML file with counts_per_m and effective_track_m",
+                     mend="the path is taken from the working folder, then from that of the platform file")  # fmt: skip
+        return robot
+    try:
+        read_calibration(path, str(path))
+    except InputError as error:
+        faults.extend(error.faults)
+    return replace(robot, drive=replace(robot.drive, calibration_file=str(path)))
 
 
 def _check_body(robot: RobotFile, place: Place, faults: Faults) -> None:

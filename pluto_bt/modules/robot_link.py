@@ -18,6 +18,7 @@ from pluto_bt.skills.sight import ScanView
 
 SOURCE = "mission"
 GOALS_KEPT = 200
+AMENDED_WITHIN_S = 1.0  # a goal so soon after the last one is the same order with other figures: a target that is followed
 MOTION_COMMAND, MOTION_STATUS = "motion/command", "motion/status"
 
 
@@ -30,6 +31,7 @@ class RobotLink:
         self.goals: list[Pair] = []  # where missions sent the robot, for pictures
         self._surroundings: Surroundings | None = None
         self._views: ScanViews | None = None
+        self._goal_s = -AMENDED_WITHIN_S
 
     @property
     def snapshot(self) -> Snapshot:
@@ -69,10 +71,15 @@ class RobotLink:
         """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
         forces = force if isinstance(force, tuple) else (force,)
         command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
-        is_goto = flags == MotionCommand.MOVETO or (0 < flags < 40 and flags % 10 == CommandType.GOTO)
-        if is_goto and len(self.goals) < GOALS_KEPT and position not in self.goals:
-            self.goals.append(position)
+        if flags == MotionCommand.MOVETO or (0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO):
+            self._note_goal(position, command.stamp_s)
         return Ticket(command, self._context.inboxes["motion"].post(SOURCE, command))
+
+    def _note_goal(self, goal: Pair, now_s: float) -> None:
+        is_new = now_s - self._goal_s >= AMENDED_WITHIN_S and goal not in self.goals
+        self._goal_s = now_s
+        if is_new and len(self.goals) < GOALS_KEPT:
+            self.goals.append(goal)
 
     def status(self, ticket: Ticket) -> FVectorState | None:
         """`motion/status` as far as it speaks of this command: motion has accepted it and has written its status since."""
@@ -103,6 +110,10 @@ class RobotLink:
     def move_arm(self, share: float) -> None:
         """Post a command to the arm."""
         self._context.inboxes["arm"].post(SOURCE, ActuatorState(self._context.clock.now_s(), 0, (share, 0.0)))
+
+    def read_alarms(self) -> None:
+        """Leave a letter for the module `alarms`."""
+        self._context.inboxes["alarms"].post(SOURCE, ActuatorState(self._context.clock.now_s()))
 
     def say(self, text: str) -> None:
         """A line for operators."""

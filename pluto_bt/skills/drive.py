@@ -39,6 +39,7 @@ class DriveParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     sonar_margin_m: Annotated[NotNegative, Meta(description="distance that sonar protection keeps from the outline")] = 0.08
     sonar_look_m: Annotated[Positive, Meta(description="echoes farther than this do not matter")] = 2.5
     blind_speed_mps: Annotated[NotNegative, Meta(description="speed under sonar protection towards a side without transducers")] = 0.15
+    calibration_file: Annotated[str, Meta(description="odometry calibration, written to the base at start; empty = the platform's figures")] = ""
     period_s: Annotated[Positive, Meta(description="time between two steps, part of the reaction time that is reckoned with")] = 0.05
 
 

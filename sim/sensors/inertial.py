@@ -22,10 +22,13 @@ class InertialSensor:
         self.period_ns = period_ns(figures.rate_hz)
         self._absolute, self._body, self._ground = figures.absolute, body, ground
         self._chance = noise.rows(12)
+        self._wander = noise.rows(3)
         keep = 0.0 if ideal else 1.0
         self._rate_noise = keep * math.radians(figures.noise_dps)
         self._drift = keep * math.radians(figures.drift_dps_per_sqrt_s)
         self._angle_noise = keep * math.radians(figures.angle_noise_deg)
+        self._lean_spread, self._lean_s = keep * math.radians(figures.angle_wander_deg), figures.angle_wander_s
+        self._lean = [self._lean_spread * noise.normal() for _ in range(3)] if self._lean_spread else [0.0, 0.0, 0.0]
         self._acceleration_noise = keep * figures.acceleration_noise_mps2
         spread = keep * math.radians(figures.bias_dps)
         self._bias = (spread * noise.normal(), spread * noise.normal(), spread * noise.normal())
@@ -49,8 +52,17 @@ class InertialSensor:
         self._bias = b1, b2, b3 = b1 + walk * d1, b2 + walk * d2, b3 + walk * d3
         rates = (psi_rate - turn * sin_phi + b1 + rate * r1, phi_rate + turn * sin_psi + b2 + rate * r2, turn * cos_phi * cos_psi + b3 + rate * r3)
         accelerations = (forward - g * sin_phi + push * a1, speed * turn + g * cos_phi * sin_psi + push * a2, g * cos_phi * cos_psi + push * a3)
-        theta = math.remainder(body.theta_rad + lean * t1, math.tau) if self._absolute else math.nan
-        return InertialRecord(now_s, now_s, rates, accelerations, theta, self._phi + lean * t2, self._psi + lean * t3)
+        l1, l2, l3 = self._lean_by(dt_s)
+        theta = math.remainder(body.theta_rad + l1 + lean * t1, math.tau) if self._absolute else math.nan
+        return InertialRecord(now_s, now_s, rates, accelerations, theta, self._phi + l2 + lean * t2, self._psi + l3 + lean * t3)
+
+    def _lean_by(self, dt_s: float) -> list[float]:
+        """The slow error of the angles: a first-order Gauss-Markov process for each."""
+        if self._lean_spread:
+            keep = math.exp(-dt_s / self._lean_s)
+            push = self._lean_spread * math.sqrt(1.0 - keep * keep)
+            self._lean = [keep * old + push * chance for old, chance in zip(self._lean, next(self._wander), strict=True)]
+        return self._lean
 
     def _rock(self, dt_s: float) -> tuple[float, float]:
         """Follow the slope of the ground; gives the rates (phi, psi) of doing so."""

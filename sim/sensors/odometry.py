@@ -25,6 +25,8 @@ class OdometrySensor:
         self._start = body.pose
         self._wheel_m = self._wheel_rad = 0.0
         self._left_counts = self._right_counts = 0.0  # with fractions: the rest of a count is not lost
+        self._reckons_with = (figures.counts_per_m, track_m)  # the base's calibration; its wheels are as they are
+        self._origin = (0, 0, 0.0, 0.0)  # counts left and right, m, rad when it was last calibrated
         self._before = (0.0, 0.0)
         self._before_s = -self.period_ns / NS
 
@@ -34,13 +36,24 @@ class OdometrySensor:
             body = self._body
             return OdometryRecord(now_s, now_s, body.driven_m, body.theta_rad - self._start[2], body.speed_mps, body.turn_rate_radps)
         self._count()
-        per_m = self._figures.counts_per_m
-        left_m, right_m = math.floor(self._left_counts) / per_m, math.floor(self._right_counts) / per_m
-        distance, heading = 0.5 * (left_m + right_m), (right_m - left_m) / self._track_m
+        distance, heading = self._reckoned()
         dt_s = max(now_s - self._before_s, 1e-6)
         speed, turn_rate = (distance - self._before[0]) / dt_s, (heading - self._before[1]) / dt_s
         self._before, self._before_s = (distance, heading), now_s
         return OdometryRecord(now_s, now_s, distance, heading, speed, turn_rate)
+
+    def calibrate(self, counts_per_m: float, track_m: float) -> None:
+        """Reckon with other figures from here on."""
+        distance, heading = self._reckoned()
+        self._origin = (math.floor(self._left_counts), math.floor(self._right_counts), distance, heading)
+        self._reckons_with = (counts_per_m, track_m)
+
+    def _reckoned(self) -> tuple[float, float]:
+        """Distance m and heading rad as the base works them out from whole counts."""
+        per_m, track_m = self._reckons_with
+        left, right, distance, heading = self._origin
+        left_m, right_m = (math.floor(self._left_counts) - left) / per_m, (math.floor(self._right_counts) - right) / per_m
+        return distance + 0.5 * (left_m + right_m), heading + (right_m - left_m) / track_m
 
     def _count(self) -> None:
         """Add what the wheels ran since the last sample."""

@@ -43,6 +43,7 @@ class FakeRobot:
         self.said: list[str] = []
         self.accept = True
         self.refuse = ""
+        self.alarms_read = 0
         self.says = FVectorState(0.0, (0.0, 0.0), (0, -1, 0, 0))
 
     def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
@@ -64,6 +65,9 @@ class FakeRobot:
 
     def point_wrist(self, *target: float) -> None:
         self.pointed.append(target)
+
+    def read_alarms(self) -> None:
+        self.alarms_read += 1
 
     def say(self, text: str) -> None:
         self.said.append(text)

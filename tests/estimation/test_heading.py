@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from estimation.gyro_bias import BiasNews, GyroBias
-from estimation.heading import AbsoluteHeading, GyroHeading
+from estimation.heading import AbsoluteHeading, GyroHeading, WheelHeading
 from estimation.inertial import InertialHeading, LowPass, theta_rate
 from estimation.odometer import Odometer, SignedSpeed
 from pluto_bt.maps.geometry import wrap_angle
@@ -141,3 +141,7 @@ def test_unsigned_speed_takes_the_sign_of_the_last_command_that_was_not_zero() -
     signed.step(0.0, 0.0, -0.3)
     assert signed.step(1.0, 0.5, 0.0) == (1.0, -0.5)
     assert signed.step(2.0, 0.5, 0.4) == (1.0, 0.5)
+
+
+def test_the_wheels_alone_ask_no_sensor() -> None:
+    assert WheelHeading().turn(0.02, 0.1, 2.0) == (0.1, False)

@@ -28,6 +28,9 @@ class FedDevice:
     def drive(self, speed_mps: float, turn_rate_radps: float) -> None:
         self.driven.append((speed_mps, turn_rate_radps))
 
+    def calibrate(self, *figures: float) -> None:
+        self.calibrated = figures
+
     def move(self, *target: float) -> None:
         self.driven.append(target)
 
@@ -45,7 +48,7 @@ class Rig:
             board=Blackboard(),
             clock=VirtualClock(),
             platform=Platform(name="rig", body=body, limits=limits, devices=Devices(**devices)),
-            inboxes={name: Inbox(name) for name in ("base", "drive", "avoid", "motion", "wrist")},
+            inboxes={name: Inbox(name) for name in ("base", "drive", "avoid", "motion", "wrist", "alarms")},
             devices=self.devices,
             map=None,
             say=lambda *event: self.events.append(event),

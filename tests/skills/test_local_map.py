@@ -112,10 +112,11 @@ def test_clearance_is_the_distance_to_the_nearest_thing_but_for_eight_percent(se
     rng = np.random.default_rng(seed)
     map = LocalMap(MotionParameters())
     i, j = map.cell(0.0, 0.0)
-    things = rng.integers(-18, 18, (int(rng.integers(1, 8)), 2)) + (i, j)
+    here = np.array((i, j))
+    things = here + rng.integers(-18, 18, (int(rng.integers(1, 8)), 2))
     map.evidence[things[:, 0], things[:, 1]] = 6
     map._changed(i, j, 10.0)
     map.refresh(0.0)
-    for a, b in rng.integers(-15, 15, (30, 2)) + (i, j):
+    for a, b in here + rng.integers(-15, 15, (30, 2)):
         true = min(map.far_cells, float(np.hypot(things[:, 0] - a, things[:, 1] - b).min()))
         assert true - 1e-3 <= map.clearance[a, b] <= 1.09 * true + 1e-4

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from pathlib import Path
@@ -9,11 +10,11 @@ from typing import Any
 
 import pytest
 
+from pluto_bt.bench.towns import Town
+from pluto_bt.bench.yards import Yard
 from pluto_bt.blackboard.messages import LocalMapState
 from pluto_bt.scenario import Play, Run
 from tests.shared_data import shared_file
-from pluto_bt.bench.towns import Town
-from pluto_bt.bench.yards import Yard
 
 MISSION = '<root BTCPP_format="4"><BehaviorTree ID="main"><Sequence>{body}</Sequence></BehaviorTree></root>'
 LANE = """<world name="lane" seed="1"><wall id="lane">0,0 30,0 30,8 0,8 0,0</wall> {more}
@@ -129,7 +130,7 @@ def test_investigate_circles_the_closest_object(tell: Any, shape: str, middle: A
     away = [(p.t_s, math.dist(p.pose[:2], middle), math.atan2(p.pose[1] - middle[1], p.pose[0] - middle[0])) for p in run.track]
     circling = [row for row in away if row[0] > run.sim_time_s - 2.0 * math.pi * radius_m / 0.3]
     assert max(abs(distance - radius_m) for _, distance, _ in circling) < 0.2
-    turned = sum(math.remainder(b[2] - a[2], math.tau) for a, b in zip(circling, circling[1:], strict=False))
+    turned = sum(math.remainder(b[2] - a[2], math.tau) for a, b in itertools.pairwise(circling))
     assert turned > 0.9 * math.tau
 
 

@@ -85,6 +85,15 @@ class MissionFiles:
                 if element.tag == "TreeNodesModel":
                     self._take_models(element)
 
+    def read_library(self, path: Path, shown: str) -> None:
+        """Read a file of the library, unless a tree of the mission has taken one of its names; `root` stays the mission's."""
+        root = read_xml_file(path, shown, self.faults)
+        own, own_models = dict(self.trees), dict(self.subtree_models)
+        if root is not None:
+            self._take_document(root, shown, path.parent)
+        self.trees |= own
+        self.subtree_models |= own_models
+
     def _take_document(self, root: XmlElement, shown: str, folder: Path) -> None:
         if root.tag != "root":
             self.faults.error(root.place, "bad-root", f"the root element is <{root.tag}>", expected="<root>", found=f"<{root.tag}>")

@@ -17,6 +17,7 @@ from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
 from pluto_bt.trees.loader.inputs import set_inputs
+from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
@@ -136,9 +137,11 @@ def _read(
     for key, value in (blackboard or {}).items():
         reading.board.root.write(key, value)
     set_inputs(reading.files, reading.main, reading.board.root, ports, reading.report)
+    own_trees = list(reading.files.trees.values())
+    add_library_trees(reading.files)
     expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
     reading.plan = expansion.run(reading.main)
-    for source in reading.files.trees.values():
+    for source in own_trees:
         if source.tree_id not in expansion.used and not faults.has_errors:
             what = f"tree {source.tree_id!r} is not used by {reading.main.tree_id!r}"
             reading.report.warning(source.element.place, "unused-tree", what)
