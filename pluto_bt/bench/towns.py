@@ -89,7 +89,8 @@ def _free(width: float, height: float, solids: list[tuple[float, float, float, f
         near = np.minimum(near, outside)
     for px, py in posts:
         near = np.minimum(near, np.hypot(x - px, y - py) - 0.12)
-    return near > NEEDED_M
+    free: Mask = near > NEEDED_M
+    return free
 
 
 def _ends(rng: np.random.Generator, free: Mask) -> tuple[tuple[float, float], tuple[float, float], float] | None:
