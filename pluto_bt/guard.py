@@ -55,7 +55,8 @@ class Guard:
 
     def hung(self, part: Part) -> None:
         """`part` never returned: name it, or the leaf it is in, stop the robot and end the run."""
-        active = self._system.executive.core.active
+        core = self._system.executive.core
+        active = core.ticking or core.active
         leaf = active.mission.current_leaf() if part.module.name == "executive" and active is not None else ""
         part.fault = "hang"
         self.end("hung", f'leaf "{leaf}" never returned' if leaf else f'module "{part.module.name}" never returned')
@@ -97,6 +98,8 @@ class Guard:
                 raise Hung(f'the world script lets leaf "{name}" hang')  # in virtual time nobody need wait for the watchdog
             raise PlutoError(f'the world script lets leaf "{name}" {"raise" if kind == "raise" else "return None"}')
 
-        active = self._system.executive.core.active
-        if active is None or not active.mission.replace_step(name, step if kind else None):
+        core = self._system.executive.core
+        trees = [activity.mission for activity in (core.active, core.job) if activity is not None]
+        found = [tree.replace_step(name, step if kind else None) for tree in trees]  # in all of them, not only in the first
+        if True not in found:
             self._system.say("warning", "unknown-leaf", "world", f'the world script names no leaf of this mission: "{name}"')

@@ -20,13 +20,19 @@ LOOK_EVERY_NS = NS // 2
 LOOK_EVERY_S = 0.05
 
 
-def rehearse(system: System) -> None:
-    """Drive half a second, so that every kernel is compiled before a watchdog looks. The system is in lockstep and is then thrown away."""
+def rehearse(system: System, with_jobs: bool) -> None:
+    """Drive half a second, so that every kernel is compiled before a watchdog looks. The system is in lockstep and is then thrown away.
+
+    Args:
+        with_jobs: the jobs of motion may be asked for, so their kernels too.
+    """
     assert isinstance(system.scheduler, Lockstep)
     system.start_parts()
     system.scheduler.start()
     system.inboxes["motion"].post("mission", ActuatorState(0.0, 10 * Avoidance.BOTH + CommandType.GOTO, (1e3, 0.0), (0.3, 0.5)))
     system.scheduler.run_until(NS // 2)
+    if with_jobs:
+        system.robot.surroundings.warm()
 
 
 class Loop:

@@ -11,6 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pluto_bt.behaviours.jobs import JobLeaf
+from pluto_bt.behaviours.look_around import WristTour
+from pluto_bt.behaviours.paths import FindPath
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.gateway.listen import parse_address
@@ -22,6 +25,8 @@ from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 
+USES_THE_MAP = (WristTour, FindPath)
+
 
 class Runner:
     """One run. After `run`, `result`, `system` and `mission` can be looked at."""
@@ -29,7 +34,8 @@ class Runner:
     def __init__(self, inputs: Inputs, mission: Mission, clock: VirtualClock | MonotonicClock, options: Options) -> None:
         self.inputs = inputs
         self.mission = mission
-        rehearse(System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()))
+        with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
+        rehearse(System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()), with_jobs)
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)

@@ -40,6 +40,7 @@ MODULES: tuple[Module, ...] = (
     Module("compass",   "pluto_bt.modules.compass:Compass",       0.1,    "io",         device="compass",                               budget_ms=1.0),
     Module("gps",       "pluto_bt.modules.gps:Gps",               0.5,    "io",         device="gps",                                   budget_ms=1.0),
     Module("wrist",     "pluto_bt.modules.wrist:Wrist",           0.05,   "io",         device="wrist", wakes=("inbox:wrist",),         budget_ms=1.0),
+    Module("arm",       "pluto_bt.modules.arm:Arm",               0.1,    "io",         device="arm",                                   budget_ms=1.0),
     Module("speed",     "pluto_bt.modules.speed:Speed",           0.1,    "io",         device="speed",                                 budget_ms=1.0),
     Module("marker",    "pluto_bt.modules.marker:Marker",         0.1,    "io",         device="marker", needs=("local",),              budget_ms=1.0),
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
@@ -48,14 +49,15 @@ MODULES: tuple[Module, ...] = (
     Module("filter",    "pluto_bt.modules.filter:Filter",         0.05,   "chain",      critical=True, needs=("base", "local"), wakes=("inbox:filter",), budget_ms=5.0),
     Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("filter",), wakes=("inbox:drive",), budget_ms=2.0),
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
-    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion",), budget_ms=5.0),
+    Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
 )
 # fmt: on
 
-# link -> the link above, which owns its inbox
-INBOXES = {"base": "filter", "filter": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "wrist": "", "alarms": ""}
+INBOXES = {  # link -> the link above, which owns its inbox
+    "base": "filter", "filter": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": "", "alarms": "",
+}  # fmt: skip
 
 
 @dataclass
@@ -71,7 +73,7 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
-    load: Callable[[str], Mission] = load_mission
+    load: Callable[..., Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
 
@@ -94,7 +96,7 @@ class System:
         self.latch = SafetyLatch()
         self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ())}
+        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ()), *(("arm",) if options.robot.devices.arm else ())}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()
 

@@ -16,14 +16,14 @@ from pluto_bt.maps.platform import Platform
 FOLDER = Path(pluto_bt.platforms.__file__).parent
 NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 SENSORS = {
-    "atrv2": "laser sonar bumpers dmu compass gps wrist", "car": "dmu marker speed steering", "jbot": "sonar imu", "pioneer": "laser sonar dmu",
+    "atrv2": "laser sonar bumpers dmu compass gps wrist arm", "car": "dmu marker speed steering", "jbot": "sonar imu", "pioneer": "laser sonar dmu",
 }  # fmt: skip
 
 
 def read(name: str) -> Platform:
     """The tables of `pluto_bt.maps.platform`; a file may hold tables of modules beside them."""
     tables = tomllib.loads((FOLDER / f"{name}.toml").read_text())
-    return msgspec.convert(tables, Platform)
+    return msgspec.convert({name: table for name, table in tables.items() if name in Platform.__struct_fields__}, Platform)
 
 
 def test_there_are_the_four_robots_of_the_design() -> None:

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
+from pluto_bt.blackboard.codes import MotionStatus, MovetoStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
+from pluto_bt.skills.sight import ScanView
+
+if TYPE_CHECKING:
+    from pluto_bt.behaviours.surroundings import Surroundings
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +39,16 @@ class Robot(Protocol):
     def resumes(self) -> int:
         """How often the mission has gone on after a pause; a motion leaf that sees it grow commands again."""
 
-    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+    @property
+    def surroundings(self) -> Surroundings:
+        """The local map and what belongs to it."""
+
+    def scan_views(self) -> Sequence[ScanView]:
+        """The laser scans that came since the last call, oldest first, each with the place it was taken from (dead reckoning)."""
+
+    def command(
+        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+    ) -> Ticket:
         """Post a command to motion; within one tick the newest wins. `tolerance_m` 0 = avoidance's own."""
 
     def status(self, ticket: Ticket) -> FVectorState | None:
@@ -50,6 +65,12 @@ class Robot(Protocol):
 
     def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
         """Point the laser."""
+
+    def move_arm(self, share: float) -> None:
+        """Unfold the arm: 0 = folded, 1 = unfolded."""
+
+    def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
+        """What a job of motion shows in `element[2..3]`; None = as it is."""
 
     def read_alarms(self) -> None:
         """Take back the alarms of `imu/alarms` that stay until they are read."""

@@ -195,6 +195,32 @@ class MissionState(Message, frozen=True, gc=False):
     ticks: int = 0
 
 
+class JobState(Message, frozen=True, gc=False):
+    """How a job of motion (42 to 45) stands: running, succeeded or failed; `moveto` and `motion` are `element[2..3]` of motion's status."""
+
+    number: int = 0
+    state: str = "running"
+    moveto: int = 0
+    motion: int = 1
+    reason: str = ""
+    text: str = ""
+
+
+class LocalMapState(Message, frozen=True, gc=False):
+    """The local map of a job, frame of dead reckoning: cell (i, j) of `cells` at i * columns + j begins at (x_m + i * cell_m, y_m + j * cell_m).
+
+    A cell is 0 = not known, 1 = free, 2 = covered (explored), 3 = something stands there, 4 = low obstacle or hole.
+    """
+
+    x_m: float = 0.0
+    y_m: float = 0.0
+    cell_m: float = 0.25
+    rows: int = 0
+    columns: int = 0
+    cells: bytes = b""
+    covered_m2: float = 0.0
+
+
 class NodeState(msgspec.Struct, frozen=True, gc=False):
     """One node of the tree as others see it: `status` is IDLE, RUNNING, SUCCESS, FAILURE or SKIPPED (told in this very tick).
 

@@ -14,6 +14,7 @@ BENCHES = {
     "stop-times": "from a cause to zero velocity, 1000 trials each",
     "tick": "a tick of the tree against stock py_trees",
     "patrols": "patrols over random courses in places nobody tuned to",
+    "movement": "moveto, explore and investigate in worlds drawn at random",
     "repeat": "runs with one seed: equal traces",
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",

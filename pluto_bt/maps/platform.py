@@ -135,6 +135,12 @@ class Wrist(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     max_acceleration_dps2: Annotated[Positive, Meta(description="quickest change of that")] = 120.0
 
 
+class Arm(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """An arm that can be unfolded."""
+
+    unfold_s: Annotated[Positive, Meta(description="time to unfold it, and to fold it again")] = 4.0
+
+
 class MarkerCamera(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Camera that sees markers on the ceiling and reports the car's position."""
 
@@ -182,6 +188,7 @@ class Devices(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=T
     compass: Compass | None = None
     gps: Gps | None = None
     wrist: Wrist | None = None
+    arm: Arm | None = None
     marker: MarkerCamera | None = None
     speed: WheelSpeed | None = None
     steering: Steering | None = None

@@ -12,6 +12,7 @@ from drivers.records import Record
 from pluto_bt.blackboard import Blackboard, Inbox
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
+from pluto_bt.modules.job_box import JobBox
 from pluto_bt.modules.post_box import PostBox
 from pluto_bt.runtime import Clock
 from pluto_bt.runtime.latch import SafetyLatch
@@ -43,6 +44,7 @@ class Context:
         silent_s: seconds since the module of that name finished a step; 0 for one that is stopped or not there.
         latch: while it holds, nothing moves.
         posts: where improved poses wait for `local`.
+        jobs: where motion orders the jobs 42 to 45 from the executive.
         order_module: (name, run) → start or stop a module.
     """
 
@@ -58,6 +60,7 @@ class Context:
     silent_s: Callable[[str], float] = lambda name: 0.0
     latch: SafetyLatch = field(default_factory=SafetyLatch)
     posts: PostBox = field(default_factory=PostBox)
+    jobs: JobBox = field(default_factory=JobBox)
     order_module: Callable[[str, bool], None] = lambda name, run: None
     joined: System | None = None
 

@@ -9,6 +9,7 @@ import msgspec
 
 from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, Pose, TreeState
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.job_runner import JobRunner
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
@@ -31,6 +32,7 @@ class Executive:
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
+        self._jobs = JobRunner(context, self.core, context.system.robot)
         self._shown: MissionState | None = None
         self._shown_statuses = ""
         self._steps = 0
@@ -48,13 +50,11 @@ class Executive:
 
     def step(self, now_s: float) -> None:
         """One turn of the executive, then what changed goes to the blackboard."""
+        self._jobs.take_orders()
         ticked = self.core.step(now_s)
-        if ticked is not None:
-            statuses = ticked.mission.status_line()
-            self._record(ticked, statuses)
-            if statuses != self._shown_statuses:
-                self._shown_statuses = statuses
-                self._tree.put(TreeState(now_s, ticked.ticks, tuple(ticked.mission.node_states())), now_s)
+        self._jobs.tell(now_s)
+        if ticked:
+            self._show_trees(ticked, now_s)
         self._show_mission(now_s)
         if self._steps % SHOW_MODULES_EVERY == 0:
             self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._system.parts)), now_s)
@@ -67,6 +67,17 @@ class Executive:
             event = self._waiting.popleft()
             self._events.put(event, now_s)
             self.on_event(event)
+
+    def _show_trees(self, ticked: list[Activity], now_s: float) -> None:
+        """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""
+        lines = [activity.mission.status_line() for activity in ticked]
+        for activity, statuses in zip(ticked, lines, strict=True):
+            self._record(activity, statuses)
+        shown = " ".join(lines)
+        if shown != self._shown_statuses:
+            self._shown_statuses = shown
+            nodes = [node for activity in ticked for node in activity.mission.node_states()]
+            self._tree.put(TreeState(now_s, ticked[0].ticks, tuple(nodes)), now_s)
 
     def _record(self, ticked: Activity, statuses: str) -> None:
         sample = self._pose()

@@ -2,24 +2,29 @@
 
 from __future__ import annotations
 
-from pluto_bt.blackboard.codes import GotoStatus, LinkStatus, MotionStatus
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState
+from pluto_bt.blackboard.codes import Avoidance, GotoStatus, LinkStatus, MotionStatus
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, JobState, Pose
 from pluto_bt.modules.context import Context
-from pluto_bt.modules.link import RELEASE, Link, below
+from pluto_bt.modules.link import RELEASE, Link, below, newest
 from pluto_bt.skills import reasons
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.motion import Motion as Skill
-from pluto_bt.skills.motion import MotionParameters
+from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.outline import Planar
 
 
 class Motion:
-    """Steps at 10 Hz, and at once when a command comes."""
+    """Steps at 10 Hz, and at once when a command comes. Jobs are ordered through `context.jobs`; their trees post to the inbox `job`."""
 
     def __init__(self, context: Context) -> None:
         self._link = Link(context, "motion", "motion")
-        self._clock = context.clock
+        self._board, self._clock, self._jobs = context.board, context.clock, context.jobs
         self._avoid = context.inboxes["avoid"]
-        self._skill = Skill(context.parameters(MotionParameters))
+        self._job_inbox = context.inboxes.get("job")
+        devices = context.platform.devices
+        has = (Avoidance.SONAR if devices.sonar else 0) | (Avoidance.LASER if devices.laser else 0)
+        self._skill = Skill(context.parameters(MotionParameters), Avoidance(has), devices.laser is not None)
+        self._pose, self._job_state = newest(context, "Localization/Pose"), newest(context, "motion/job")
         self._avoid_status, self._avoid_command = below(context, "avoidance")
         self._sent: ActuatorState | None = None
 
@@ -36,6 +41,7 @@ class Motion:
         if letter is not None and letter.is_stop:
             self._avoid.stop("motion", now_s)
             self._skill.stop(letter.command)
+            self._order()
             self._sent = None
         if not self._link.is_running:
             self._link.tell(now_s, self._rest(now_s), letter.command if letter is not None and letter.is_stop else None)
@@ -46,18 +52,48 @@ class Motion:
                 self._link.release()
                 self._link.tell(now_s, self._rest(now_s), letter.command)
                 return
-            command = self._skill.accept(letter.command, now_s)
-            if command is not None:
-                self._avoid.post("motion", command)
-                self._sent = command
+            self._pass_down(self._skill.accept(letter.command, now_s, self._where(now_s)))
+            self._order()
+        self._work_for_the_job(now_s)
         has_it = self._sent is None or self._avoid_command() == self._sent
         self._link.tell(now_s, self._skill.status(now_s, self._avoid_status(), has_it), None if letter is None else letter.command)
 
     def stop(self) -> None:
-        """The thread stops and shows -10. Avoidance goes on: stopping motion does not stop it."""
+        """The thread stops and shows -10. Avoidance goes on: stopping motion does not stop it; a job ends."""
         now_s = self._clock.now_s()
+        if self._skill.job is not None:
+            self._avoid.stop("motion", now_s)
+            self._jobs.put(None)
+            self._skill.reset()
         self._link.is_running = False
         self._link.tell(now_s, self._rest(now_s))
+
+    def _pass_down(self, command: ActuatorState | None) -> None:
+        if command is not None:
+            self._avoid.post("motion", command)
+            self._sent = command
+
+    def _order(self) -> None:
+        is_ordered, job = self._skill.order()
+        if is_ordered:
+            self._jobs.put(job)
+
+    def _work_for_the_job(self, now_s: float) -> None:
+        """Hear how the job stands, and pass down what its tree commands. What an ended job still commands is dropped."""
+        letter = None if self._job_inbox is None else self._job_inbox.take()
+        job = self._skill.job
+        if letter is not None and job is not None and letter.source == job.source:
+            self._pass_down(letter.command)
+        state: JobState | None = self._job_state()
+        if state is not None and job is not None:
+            self._skill.hear(state)
+            if self._skill.verdict.reason:
+                self._pass_down(ActuatorState(now_s))  # it failed: the robot stands, whatever its tree did last
+
+    def _where(self, now_s: float) -> Planar | None:
+        """The pose of interface 3, None if it is missing or too old."""
+        pose: Pose | None = self._pose()
+        return None if pose is None or self._board.is_stale("Localization/Pose", now_s) else (pose.pose[0], pose.pose[1], pose.pose[3])
 
     def _rest(self, now_s: float) -> FVectorState:
         element: tuple[int, ...] = (int(LinkStatus.STOPPED_THREAD), int(GotoStatus.STOPPED_THREAD), 0, int(MotionStatus.STOPPED_THREAD))

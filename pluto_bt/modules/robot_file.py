@@ -21,7 +21,7 @@ from pluto_bt.runtime.parameters import build, override
 from pluto_bt.skills.avoid import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.filter_parameters import FilterParameters
-from pluto_bt.skills.motion import MotionParameters
+from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.source import Faults, InputError, Place, did_you_mean
 from pluto_bt.source.text import read_text
 from pluto_bt.source.toml_reader import MAX_TOML_BYTES, read_toml

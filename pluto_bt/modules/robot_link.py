@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pluto_bt.behaviours.robot import Ticket
+from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard import Snapshot
-from pluto_bt.blackboard.codes import CommandType
+from pluto_bt.blackboard.codes import CommandType, MotionCommand, MotionStatus, MovetoStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.scan_views import ScanViews
+from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.sight import ScanView
 
 SOURCE = "mission"
 GOALS_KEPT = 200
@@ -24,6 +30,8 @@ class RobotLink:
         self._snapshot = context.board.snapshot(context.clock.now_s())
         self.resumes = 0
         self.goals: list[Pair] = []  # where missions sent the robot, for pictures
+        self._surroundings: Surroundings | None = None
+        self._views: ScanViews | None = None
         self._goal_s = -AMENDED_WITHIN_S
 
     @property
@@ -45,10 +53,26 @@ class RobotLink:
         """Take the snapshot that the next tick sees."""
         self._snapshot = self._context.board.snapshot(now_s)
 
-    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+    @property
+    def surroundings(self) -> Surroundings:
+        """The local map and what belongs to it; made when it is first asked for."""
+        if self._surroundings is None:
+            self._surroundings = Surroundings(self._context.platform, self._context.parameters(MotionParameters))
+        return self._surroundings
+
+    def scan_views(self) -> Sequence[ScanView]:
+        """The laser scans since the last call, with the places they were taken from."""
+        if self._views is None:
+            self._views = ScanViews(self._context)
+        return self._views.new()
+
+    def command(
+        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+    ) -> Ticket:
         """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
-        command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), (force,))
-        if flags % 10 == CommandType.GOTO and flags > 0:
+        forces = force if isinstance(force, tuple) else (force,)
+        command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
+        if flags == MotionCommand.MOVETO or (0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO):
             self._note_goal(position, command.stamp_s)
         return Ticket(command, self._context.inboxes["motion"].post(SOURCE, command))
 
@@ -60,12 +84,10 @@ class RobotLink:
 
     def status(self, ticket: Ticket) -> FVectorState | None:
         """`motion/status` as far as it speaks of this command: motion has accepted it and has written its status since."""
-        accepted, status = self._snapshot.newest(MOTION_COMMAND), self._snapshot.newest(MOTION_STATUS)
-        if accepted is None or status is None or status.written_s < accepted.written_s:
-            return None
-        if accepted.value != ticket.command or not isinstance(status.value, FVectorState):
-            return None
-        return status.value
+        return spoken_of(self._snapshot, MOTION_COMMAND, MOTION_STATUS, ticket.command)
+
+    def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
+        """Nobody listens: only jobs have phases."""
 
     def newest(self, topic: str) -> Message | None:
         """The newest value, or None if nobody has written yet."""
@@ -86,6 +108,10 @@ class RobotLink:
         rates, accelerations = (rate_radps, rate_radps), (acceleration_radps2, acceleration_radps2)
         self._context.inboxes["wrist"].post(SOURCE, ActuatorState(now_s, 0, (pan_rad, tilt_rad), rates, accelerations))
 
+    def move_arm(self, share: float) -> None:
+        """Post a command to the arm."""
+        self._context.inboxes["arm"].post(SOURCE, ActuatorState(self._context.clock.now_s(), 0, (share, 0.0)))
+
     def read_alarms(self) -> None:
         """Leave a letter for the module `alarms`."""
         self._context.inboxes["alarms"].post(SOURCE, ActuatorState(self._context.clock.now_s()))
@@ -101,3 +127,11 @@ class RobotLink:
     def stop(self) -> None:
         """Zero velocity at once; beats every command that waits."""
         self._context.inboxes["motion"].stop(SOURCE, self._context.clock.now_s())
+
+
+def spoken_of(snapshot: Snapshot, command_topic: str, status_topic: str, command: ActuatorState) -> FVectorState | None:
+    """The status of a link as far as it speaks of `command`: the link has accepted it and has written its status since."""
+    accepted, status = snapshot.newest(command_topic), snapshot.newest(status_topic)
+    if accepted is None or status is None or status.written_s < accepted.written_s or accepted.value != command:
+        return None
+    return status.value if isinstance(status.value, FVectorState) else None

@@ -10,11 +10,14 @@ EXECUTIVE_SILENT = "executive-silent"
 LASER = "laser"
 LASER_FATAL = "laser-fatal"
 LASER_STALE = "laser-stale"
+NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
+NOTHING_TO_RESUME = "nothing-to-resume"
 ODOMETRY_FROZEN = "odometry-frozen"
 ODOMETRY_STALE = "odometry-stale"
 OPERATOR_STOP = "operator-stop"
 OUTSIDE_MAP = "outside-map"
+OUTSIDE_RECTANGLE = "outside-rectangle"
 SONAR = "sonar"
 SONAR_STALE = "sonar-stale"
 STOPPED = "stopped"
@@ -30,7 +33,10 @@ CHAIN_REASONS: dict[str, str] = {
     LASER: "the laser sees an obstacle in the way; slower or stopped until it is clear",
     LASER_FATAL: "the laser has had a fatal error and is rebooting (about 20 s)",
     LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
+    NO_DEVICE: "the job needs a device that the platform does not have",
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
+    NOTHING_TO_RESUME: "45: nothing was stopped, and no rectangle is set",
+    OUTSIDE_RECTANGLE: "the goal or the start is outside the rectangle",
     ODOMETRY_FROZEN: "the wheels are told to turn and the encoders stand still: blocked wheels or dead encoders",
     ODOMETRY_STALE: "the base's odometry is missing or too old",
     OPERATOR_STOP: "an operator stopped the robot; resume the mission or send a new command",

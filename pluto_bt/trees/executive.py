@@ -1,6 +1,7 @@
 """The executive: one mission at a time, ticked, paused, resumed, stopped; it decides nothing that the tree does not decide.
 
-Beside the mission there may be one errand: a single node that an operator runs while no mission does (or while it is paused).
+Beside the mission there may be one errand: a single node that an operator runs while no mission does (or while it is paused);
+and one job: the library tree of a complex command of motion, which a node of the mission, an errand or a raw command has asked for.
 Start reading at `Executive.step`.
 """
 
@@ -79,6 +80,9 @@ class Executive:
         self._runs = 0
         self.mission: Activity | None = None
         self.errand: Activity | None = None
+        self.job: Activity | None = None
+        self._job_body = body
+        self.ticking: Activity | None = None  # for the watchdog: who is at work
 
     @property
     def active(self) -> Activity | None:
@@ -93,20 +97,30 @@ class Executive:
             state = turns.get(state, turns.get("", state))
         return state
 
-    def step(self, now_s: float) -> Activity | None:
-        """One turn: orders, a fresh view, one decision. Gives what was ticked."""
+    def step(self, now_s: float) -> list[Activity]:
+        """One turn: orders, a fresh view, one decision of the mission and one of the job. Gives what was ticked."""
         while self._orders:
             self._orders.popleft()[0]()
-        active = self.active
-        if active is None or active.state != RUNNING:
-            return None
+        ticked = [activity for activity in (self.active, self.job) if activity is not None and activity.state == RUNNING]
+        if not ticked:
+            return ticked
         self._body.refresh(now_s)
-        active.tick()
-        if active.is_over:
+        for activity in ticked:
+            if activity is self.job:
+                self._job_body.refresh(now_s)
+            self.ticking = activity
+            activity.tick()
+            if activity.is_over:
+                self._close(activity)
+        self.ticking = None
+        return ticked
+
+    def _close(self, activity: Activity) -> None:
+        """The end of a mission or an errand brings the robot to rest; after that of a job motion does it."""
+        if activity is not self.job:
             self._body.stop()
-            if active.error is not None:
-                self._say("error", "leaf-error", active.text)
-        return active
+        if activity.error is not None:
+            self._say("error", "leaf-error", activity.text)
 
     def start(self, mission: Mission) -> None:
         """Run `mission` from its beginning at the next step; one that runs is ended."""
@@ -118,6 +132,17 @@ class Executive:
         errand = Activity(mission, self._runs)
         self._orders.append((lambda: self._start_errand(errand), {}))
         return errand
+
+    def start_job(self, mission: Mission, body: Body) -> None:
+        """Run the tree of a job from its beginning at once; one that runs is ended. Called by the thread that steps."""
+        self.end_job("preempted")
+        self._runs += 1
+        self.job, self._job_body = Activity(mission, self._runs), body
+
+    def end_job(self, reason: str) -> None:
+        """Halt the tree of the job; harmless if it is over. Called by the thread that steps."""
+        if self.job is not None:
+            self.job.end(reason)
 
     def end_errand(self, errand: Activity, reason: str) -> None:
         """End an errand; harmless if it is over."""

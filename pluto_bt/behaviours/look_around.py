@@ -1,0 +1,159 @@
+"""LookAround and SweepWrist: active scanning. The wrist shows the laser the sides and the ground; what it sees stays in the local map."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
+from pluto_bt.behaviours.paths import SIDES
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
+from pluto_bt.blackboard.messages import ActuatorState, LaserScan, Pair
+
+THERE_RAD: Final = math.radians(2.0)
+RATE_DPS: Final = 60.0
+ACCELERATION_DPS2: Final = 120.0
+PATIENCE_S: Final = 4.0  # a wrist that does not get there keeps nobody waiting longer
+STILL_MPS, STILL_RADPS = 0.02, 0.03
+HOLD_S: Final = 1.0
+
+
+class WristTour(Leaf):
+    """Points the laser from one target to the next; at each one scan has to arrive that was taken there."""
+
+    def initialise(self) -> None:
+        """From the beginning."""
+        self._targets = self.targets()
+        self._next, self._since_s, self._there_s = -1, self.now_s(), math.inf
+
+    def targets(self) -> list[Pair]:
+        """(pan, tilt) in radians, one after the other."""
+        raise NotImplementedError
+
+    def go_on(self, robot: Robot) -> bool:
+        """Go on with the tour; True when it is over."""
+        now_s = self.now_s()
+        robot.surroundings.look(robot, now_s)
+        if self._next < 0 or self._is_seen(robot, now_s):
+            self._next += 1
+            if self._next >= len(self._targets):
+                return True
+            self._since_s, self._there_s = now_s, math.inf
+            self._point(robot, self._targets[self._next])
+        return False
+
+    def terminate(self, new_status: Status) -> None:
+        """The laser looks ahead again."""
+        robot = self.robot
+        if robot is not None and robot.platform.devices.wrist is not None and self._next >= 0:
+            self._point(robot, (0.0, 0.0))
+
+    def _is_seen(self, robot: Robot, now_s: float) -> bool:
+        state, scan = robot.newest("wrist/state"), robot.newest("sick/scan")
+        target = self._targets[self._next]
+        at = state.position if isinstance(state, ActuatorState) else (0.0, 0.0)  # without a wrist the laser always looks ahead
+        is_there = max(abs(at[i] - target[i]) for i in (0, 1)) < THERE_RAD
+        if is_there and self._there_s == math.inf:
+            self._there_s = now_s
+        return (isinstance(scan, LaserScan) and scan.stamp_s >= self._there_s) or now_s - self._since_s > PATIENCE_S
+
+    def _point(self, robot: Robot, target: Pair) -> None:
+        wrist = robot.platform.devices.wrist
+        if wrist is not None:
+            rate_dps, acceleration_dps2 = min(RATE_DPS, wrist.max_rate_dps), min(ACCELERATION_DPS2, wrist.max_acceleration_dps2)
+            robot.point_wrist(*target, math.radians(rate_dps), math.radians(acceleration_dps2))
+
+
+class LookAround(WristTour):
+    """Waits until the robot stands, then looks to the sides and to the ground ahead. A robot without a wrist only looks ahead."""
+
+    INPUT_PORTS = {
+        "side": Port(str, False, "where to look; `none` = only ahead", "both", choices=SIDES),
+        "pan_deg": Port(float, False, "how far to the sides, at most as far as the wrist goes", 55.0, unit="deg", ge=0.0, le=180.0),
+        "tilt_deg": Port(float, False, "how far down", 10.0, unit="deg", ge=0.0, le=90.0),
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def targets(self) -> list[Pair]:
+        """The sides, the ground, and ahead."""
+        wrist = self.robot.platform.devices.wrist if self.robot is not None else None
+        if wrist is None or self.get_input("side") == "none":
+            return [(0.0, 0.0)]
+        pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
+        tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
+        side = self.get_input("side")
+        panned = [(angle, 0.0) for angle, word in ((pan, "left"), (-pan, "right")) if side in (word, "both")]
+        return [*panned, (0.0, tilt), (0.0, 0.0)]
+
+    def update(self) -> Status:
+        """Stand, look, done."""
+        robot = self.robot
+        if robot is None:
+            return self.fail("not-connected", "no robot")
+        self._hold(robot)
+        if self._next < 0 and self._moves(robot) and self.now_s() - self._since_s < PATIENCE_S:
+            robot.surroundings.look(robot, self.now_s())
+            return self.wait("coming to rest")
+        return self.succeed("looked around") if self.go_on(robot) else self.wait("looking around")
+
+    def _moves(self, robot: Robot) -> bool:
+        raw = robot.newest("ATRV2/Drive/Raw")
+        return isinstance(raw, ActuatorState) and (abs(raw.velocity[0]) > STILL_MPS or abs(raw.velocity[1]) > STILL_RADPS)
+
+
+    def initialise(self) -> None:
+        """Nothing is held yet."""
+        super().initialise()
+        self._held_s = -math.inf
+
+    def _hold(self, robot: Robot) -> None:
+        """Command the robot to stand, again and again, so that drive does not time out."""
+        if self.now_s() - self._held_s >= HOLD_S:
+            self._held_s = self.now_s()
+            robot.command(0)
+
+
+class SweepWrist(WristTour):
+    """Sweeps the laser to both sides and down to the ground, `rounds` times; does not touch the wheels."""
+
+    INPUT_PORTS = {
+        "pan_deg": Port(float, False, "how far to either side; 0 = not at all", 40.0, unit="deg", ge=0.0, le=180.0),
+        "tilt_deg": Port(float, False, "how far down; 0 = not at all", 10.0, unit="deg", ge=0.0, le=90.0),
+        "rounds": Port(int, False, "how many times; -1 = until it is halted", 1, ge=-1),
+        "optional": Port(bool, False, "true: a robot without a wrist does nothing instead of failing", False),
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def initialise(self) -> None:
+        """From the beginning."""
+        super().initialise()
+        self._rounds = 0
+
+    def targets(self) -> list[Pair]:
+        """Left, down, right, down, as far as each is asked for; ahead at the end."""
+        wrist = self.robot.platform.devices.wrist if self.robot is not None else None
+        if wrist is None:
+            return []
+        pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
+        tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
+        down = [(0.0, tilt)] if tilt > 0.0 else []
+        return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, (0.0, 0.0)]
+
+    def update(self) -> Status:
+        """One round after the other."""
+        robot, rounds = self.robot, int(self.get_input("rounds"))
+        if robot is None:
+            return self.fail("not-connected", "no robot")
+        if robot.platform.devices.wrist is None:
+            if not self.get_input("optional"):
+                return self.fail("no-device", "the platform has no wrist")
+            return self.wait("no wrist") if rounds < 0 else self.succeed("no wrist")
+        if self._rounds == rounds:
+            return self.succeed(f"{rounds} rounds")
+        if self.go_on(robot):
+            self._rounds, self._next = self._rounds + 1, -1
+        return self.succeed(f"{rounds} rounds") if self._rounds == rounds else self.wait("sweeping")

@@ -1,0 +1,177 @@
+"""FindPath and FollowRay: the two steps of ray following, of which the library trees make moveto and explore."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from py_trees.common import Status
+from py_trees.ports import NoDataAvailable
+
+from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
+from pluto_bt.blackboard.codes import CommandType, GotoStatus
+from pluto_bt.blackboard.messages import FVectorState, Pair
+from pluto_bt.skills import ray_following as ray
+from pluto_bt.skills.ray_following import RayFollowing
+from pluto_bt.skills.rays import is_open
+from pluto_bt.skills.ways import Way
+
+SIDES: Final = ("none", "left", "right", "both")
+NEW_POINT_M: Final = 0.6  # a goto point that moves less is not worth a new command
+POINT_TOLERANCE_M: Final = 0.4
+NEW_HEADING_RAD: Final = math.radians(8.0)
+REFRESH_S: Final = 2.0
+SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on
+GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
+
+
+def goal_of(leaf: Leaf) -> Pair | None:
+    """The goal, or None where the leaf was given none."""
+    try:
+        goal: Pair = leaf.get_input("goal")
+    except NoDataAvailable:
+        return None
+    return goal
+
+
+def is_near(around: Surroundings, goal: Pair) -> bool:
+    """True if the goal is so near, and the straight way there so free, that a simple goto does."""
+    p, here = around.parameters, around.to_dead_reckoning(goal)
+    distance_m = math.dist(here, around.robot[:2])
+    if distance_m > p.near_goal_m:
+        return False
+    return distance_m < p.tolerance_m or is_open(around.map, around.robot[:2], here, 0.8 * around.ways.least_m, 0.5)
+
+
+class FindPath(Leaf):
+    """Looks for the best open path to `goal`, and fails with `no-path` where there is none; or to ground that is not explored yet, and
+    says whether it has `found` any."""
+
+    INPUT_PORTS = dict(GOAL)
+    OUTPUT_PORTS = {
+        "near": Port(bool, False, "true: the goal is in straight reach of a simple goto"),
+        "found": Port(bool, False, "true: there is a path"),
+        **MOTION_OUTPUTS,
+    }
+
+    def update(self) -> Status:
+        """Answers at once."""
+        robot = self.robot
+        if robot is None:
+            return self.fail("not-connected", "no robot")
+        around = robot.surroundings
+        if not around.look(robot, self.now_s()):
+            return self.fail("no-pose", "it is not known where the robot is")
+        goal = goal_of(self)
+        around.openings.turn()
+        if goal is not None and is_near(around, goal):
+            self._set_output("near", True)
+            return self.succeed("the goal is near")
+        self._set_output("near", False)
+        around.way = around.find(goal)
+        self._set_output("found", around.way is not None)
+        if around.way is None:
+            return self.succeed("all that can be reached is explored") if goal is None else self.fail("no-path", "every way is blocked")
+        return self.succeed(f"a path of {around.way.length_m:.1f} m")
+
+
+class FollowRay(MotionLeaf):
+    """Follows the path found by FindPath in the middle of the street. SUCCESS where there is something new to decide: at its end, at an
+    opening, where it is blocked, or where the goal is near. Fails with `stuck` when it is blocked again and again."""
+
+    INPUT_PORTS = {**GOAL, **MOTION_INPUTS}
+    OUTPUT_PORTS = {
+        "near": Port(bool, False, "true: the goal is in straight reach of a simple goto"),
+        "side": Port(str, False, "where to look before deciding", choices=SIDES),
+        **MOTION_OUTPUTS,
+    }
+
+    def begin(self, robot: Robot) -> Status | None:
+        """Take the path."""
+        around, now_s = robot.surroundings, self.now_s()
+        if not around.look(robot, now_s) or around.way is None:
+            return self.fail("no-path", "there is no path to follow: FindPath comes first")
+        self._goal = goal_of(self)
+        self._following = RayFollowing(around.map, around.ways.least_m, around.openings)
+        self._following.begin(around.way, self._find, now_s, around.robot)
+        self._point: Pair | None = None
+        self._heading_rad: float | None = None
+        self._turn_sent_s = now_s
+        return self.follow(robot)
+
+    def resume(self, robot: Robot) -> None:
+        """The next step commands anyway."""
+        self._point = self._heading_rad = None
+        self._following.pause(self.now_s())
+
+    def follow(self, robot: Robot) -> Status:
+        """One step along the ray."""
+        around, now_s = robot.surroundings, self.now_s()
+        status = self.chain_status(robot)
+        trouble = self.chain_trouble(robot, status)
+        if trouble is not None:
+            return trouble
+        if not around.look(robot, now_s):
+            return self.wait("no pose")
+        if self._goal is not None and is_near(around, self._goal):
+            around.blocked = 0
+            return self._decide("none", "the goal is near", near=True)
+        if status is not None and self._word:
+            self._following.pause(now_s)
+        speed_mps = status.data[0] if status is not None else 0.0
+        advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)
+        if advice.kind == ray.GO and status is not None and status.element[1] == GotoStatus.STUCK:
+            advice = ray.Advice(ray.BLOCKED, self._ahead(around, 0.9), text=status.text)
+        return self._carry_out(robot, around, advice, status)
+
+    def _carry_out(self, robot: Robot, around: Surroundings, advice: ray.Advice, status: FVectorState | None) -> Status:
+        if advice.kind == ray.GO:
+            return self._go(robot, around, advice.point, status)
+        if advice.kind == ray.TURN:
+            return self._turn(robot, around, advice.heading_rad)
+        if advice.kind == ray.BLOCKED:
+            return self._blocked(around, advice)
+        around.blocked = 0
+        return self._decide(advice.side or "none", advice.text)
+
+    def _find(self) -> Way | None:
+        assert self.robot is not None  # follow() has looked
+        return self.robot.surroundings.find(self._goal)
+
+    def _go(self, robot: Robot, around: Surroundings, point: Pair, status: FVectorState | None) -> Status:
+        """A goto to a point on the ray, renewed when the point has moved on."""
+        is_there = status is not None and status.element[1] == GotoStatus.REACHED
+        if self._point is None or math.dist(point, self._point) > NEW_POINT_M or is_there:
+            self._point, self._heading_rad = point, None
+            turn_radps = math.radians(robot.platform.limits.max_turn_rate_dps)
+            self.post(robot, CommandType.GOTO, around.to_map(point), (self.max_speed_mps(robot), turn_radps), POINT_TOLERANCE_M)
+        return self.wait("following the path")
+
+    def _turn(self, robot: Robot, around: Surroundings, heading_rad: float) -> Status:
+        """Turn on the spot to a heading."""
+        heading_rad = around.heading_in_map(heading_rad)
+        is_new = self._heading_rad is None or abs(math.remainder(heading_rad - self._heading_rad, math.tau)) > NEW_HEADING_RAD
+        if is_new or self._last_s - self._turn_sent_s > REFRESH_S:  # drive would time out
+            self._heading_rad, self._point, self._turn_sent_s = heading_rad, None, self._last_s
+            self.post(robot, CommandType.REGULATOR, (0.0, heading_rad))
+        return self.wait("turning to the path")
+
+    def _blocked(self, around: Surroundings, advice: ray.Advice) -> Status:
+        around.map.shut(*self._ahead(around, 0.9), SHUT_M, self.now_s())
+        around.blocked += 1
+        if around.blocked >= MOST_BLOCKED:
+            return self.fail("stuck", advice.text)
+        return self._decide("both", advice.text)
+
+    def _ahead(self, around: Surroundings, distance_m: float) -> Pair:
+        x, y, theta = around.robot
+        return x + distance_m * math.cos(theta), y + distance_m * math.sin(theta)
+
+    def _decide(self, side: str, text: str, near: bool = False) -> Status:
+        self._set_output("near", near)
+        self._set_output("side", side)
+        return self.succeed(text)

@@ -1,0 +1,103 @@
+"""What the leaves of the complex jobs share: the local map, the ray that is followed, the rectangle, and the frames between which they pass.
+
+The map lives in the frame of dead reckoning, which never jumps; goals and the rectangle are given in `Localization/Pose`. One object per
+robot, made when it is first asked for; it is fed only while somebody asks.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pluto_bt.behaviours.robot import Robot
+from pluto_bt.blackboard.messages import Pair, Pose
+from pluto_bt.maps.platform import Platform
+from pluto_bt.skills.circling import SeenObject
+from pluto_bt.skills.local_map import LocalMap
+from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.outline import Planar, outline_of
+from pluto_bt.skills.rays import Openings
+from pluto_bt.skills.rectangle import Rectangle
+from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.ways import Way, Ways
+
+MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
+
+
+class Surroundings:
+    """The memory of one robot. `robot` and `believed` are its pose in dead reckoning and in `Localization/Pose`."""
+
+    def __init__(self, platform: Platform, parameters: MotionParameters) -> None:
+        self.parameters = parameters
+        self.map = LocalMap(parameters)
+        self.ways = Ways(self.map, outline_of(platform.body.outline_m))
+        self.openings = Openings(self.map)
+        self.rectangle: Rectangle | None = None  # in Localization/Pose
+        self._laser = platform.devices.laser
+        self._is_empty = True
+        self.begin(None)
+
+    def begin(self, rectangle: Rectangle | None, goes_on: bool = False) -> None:
+        """A job begins; what was seen stays known, what was explored only if the job goes on."""
+        self.rectangle = rectangle
+        self.blocked = 0
+        self.way: Way | None = None
+        self.views: tuple[ScanView, ...] = ()  # the scans of the last look
+        self.object: SeenObject | None = None
+        if not goes_on:
+            self.map.covered[:] = 0
+            self.openings = Openings(self.map)
+
+    def warm(self) -> None:
+        """Use every kernel once, so that no later use waits for its compilation. For a memory that is then thrown away."""
+        self.map.warm()
+        self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
+
+    def look(self, robot: Robot, now_s: float) -> bool:
+        """Take what the robot has seen since the last look. False if it is not known where it is."""
+        dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
+        if not isinstance(dead, Pose) or not isinstance(believed, Pose) or robot.is_stale("Localization/Pose"):
+            return False
+        self.robot: Planar = (dead.pose[0], dead.pose[1], dead.pose[3])
+        self.believed: Planar = (believed.pose[0], believed.pose[1], believed.pose[3])
+        if self._is_empty:
+            self.map.forget(self.robot)
+            self._is_empty = False
+        self.views = tuple(robot.scan_views())
+        for view in self.views:
+            if view.laser is not None and self._laser is not None:
+                self.map.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
+        self.map.refresh(now_s)
+        return True
+
+    @property
+    def rectangle_here(self) -> Rectangle | None:
+        """The rectangle in the frame of dead reckoning."""
+        if self.rectangle is None:
+            return None
+        x, y = self.to_dead_reckoning(self.rectangle.home[:2])
+        return self.rectangle._replace(home=(x, y, self.rectangle.home[2] - self.believed[2] + self.robot[2]))
+
+    def to_dead_reckoning(self, point: Pair) -> Pair:
+        """A point of `Localization/Pose` in the frame of dead reckoning."""
+        return _moved(point, self.believed, self.robot)
+
+    def to_map(self, point: Pair) -> Pair:
+        """A point of dead reckoning in the frame of `Localization/Pose`."""
+        return _moved(point, self.robot, self.believed)
+
+    def heading_in_map(self, heading_rad: float) -> float:
+        """A heading of dead reckoning in the frame of `Localization/Pose`."""
+        return heading_rad - self.robot[2] + self.believed[2]
+
+    def find(self, goal: Pair | None) -> Way | None:
+        """The best way to a goal (`Localization/Pose`), or with None to the nearest new ground."""
+        if goal is None:
+            return self.ways.to_new_ground(self.robot, self.rectangle_here)
+        return self.ways.to_goal(self.robot, self.to_dead_reckoning(goal), self.rectangle_here)
+
+
+def _moved(point: Pair, before: Planar, after: Planar) -> Pair:
+    """A point given beside `before` as it lies beside `after`; both are the same robot in two frames."""
+    dx, dy = point[0] - before[0], point[1] - before[1]
+    c, s = math.cos(after[2] - before[2]), math.sin(after[2] - before[2])
+    return after[0] + c * dx - s * dy, after[1] + s * dx + c * dy

@@ -1,0 +1,55 @@
+"""The robot as the tree of a job sees it: it commands through motion's hands, on behalf of the job."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pluto_bt.behaviours.robot import Ticket
+from pluto_bt.blackboard.codes import GotoStatus, MotionStatus, MovetoStatus
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Pair
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.robot_link import RobotLink, spoken_of
+from pluto_bt.skills.jobs import Job
+
+INBOX: Final = "job"
+AVOIDANCE_COMMAND, AVOIDANCE_STATUS = "avoidance/command", "avoidance/status"
+
+
+class JobLink(RobotLink):
+    """Implements `Robot`. What motion passes down for the job goes unchanged to avoidance, so avoidance's status speaks of it."""
+
+    def __init__(self, context: Context, robot: RobotLink, job: Job) -> None:
+        super().__init__(context)
+        self._robot, self._job = robot, job
+        self._last: Ticket | None = None
+        self.moveto, self.motion = MovetoStatus.NONE, MotionStatus.SCANNING_FOR_PATHS
+        self._surroundings = robot.surroundings
+
+    def refresh(self, now_s: float) -> None:
+        """See what the mission sees in this tick."""
+        self._snapshot = self._robot.snapshot
+
+    def command(
+        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+    ) -> Ticket:
+        """Post a command for motion to pass down. A goto that has arrived stands already: no zero velocity takes its status away."""
+        if flags == 0 and velocity == (0.0, 0.0) and self._has_arrived():
+            assert self._last is not None
+            return self._last
+        forces = force if isinstance(force, tuple) else (force,)
+        command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
+        self._last = Ticket(command, self._context.inboxes[INBOX].post(self._job.source, command))
+        return self._last
+
+    def status(self, ticket: Ticket) -> FVectorState | None:
+        """`avoidance/status` as far as it speaks of this command."""
+        return spoken_of(self._snapshot, AVOIDANCE_COMMAND, AVOIDANCE_STATUS, ticket.command)
+
+    def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
+        """What motion shows of this job."""
+        self.moveto = self.moveto if moveto is None else moveto
+        self.motion = self.motion if motion is None else motion
+
+    def _has_arrived(self) -> bool:
+        status = None if self._last is None else self.status(self._last)
+        return status is not None and status.element[1] == GotoStatus.REACHED

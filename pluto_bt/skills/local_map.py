@@ -1,0 +1,172 @@
+"""What the robot has seen around it: a grid in the frame of dead reckoning that goes along with the robot and forgets.
+
+A level scan says where something stands and where it is free; a scan that looks down also says where the ground is not: holes, kerbs, low
+things that a level scan passes over. Both are remembered, the second for `ground_memory_s`, for no level scan can take it back.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, clearances, mark_ground, mark_level
+from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.outline import Array, Planar
+
+Indices = NDArray[np.intp]
+CELLS = 640  # of one side
+LEVEL_RAD = math.radians(0.5)
+NEVER_S = -1.0
+
+
+class Cell(NamedTuple):
+    """Indices of a cell, and (as floats) a place in cells."""
+
+    i: int
+    j: int
+
+
+class LocalMap:
+    """The grid. `clearance` (cells) is kept up to date by `refresh`; `low_s` is when something low was seen, `NEVER_S` = never."""
+
+    def __init__(self, parameters: MotionParameters) -> None:
+        self.parameters = parameters
+        self.cell_m = parameters.path_half_width_m / 6.0
+        self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
+        self.far_cells = parameters.wide_half_width_m / self.cell_m
+        self.forget((0.0, 0.0, 0.0))
+
+    def forget(self, middle: Planar) -> None:
+        """Nothing is known; the middle of the grid is here."""
+        self.evidence: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
+        self.covered: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
+        self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
+        self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
+        self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
+        self._touched: Counts = np.zeros((CELLS, CELLS), dtype=np.int32)
+        self._scans = 0
+        self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
+        self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
+
+    # ------------------------------------------------------------------ places
+
+    def place(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Where a point lies, in cells."""
+        return x_m / self.cell_m - self.i0, y_m / self.cell_m - self.j0
+
+    def cell(self, x_m: float, y_m: float) -> Cell:
+        """The cell of a point, the nearest one of the edge for a point outside."""
+        i, j = self.place(x_m, y_m)
+        return Cell(min(max(math.floor(i), 0), CELLS - 1), min(max(math.floor(j), 0), CELLS - 1))
+
+    def middle_m(self, i: float, j: float) -> tuple[float, float]:
+        """The middle of a cell."""
+        return (i + self.i0 + 0.5) * self.cell_m, (j + self.j0 + 0.5) * self.cell_m
+
+    def has_inside(self, x_m: float, y_m: float) -> bool:
+        """True if the grid reaches there."""
+        i, j = self.place(x_m, y_m)
+        return 0.0 <= i < CELLS and 0.0 <= j < CELLS
+
+    def clearance_m(self, x_m: float, y_m: float) -> float:
+        """Distance from a point to the nearest thing that stands, at most `wide_half_width_m`."""
+        return float(self.clearance[self.cell(x_m, y_m)]) * self.cell_m
+
+    def cells(self, points: Array) -> tuple[Indices, Indices]:
+        """The cells of points (n, 2), as indices of a grid; the nearest one of the edge for points outside."""
+        i = np.floor(points[:, 0] / self.cell_m).astype(np.intp) - self.i0
+        j = np.floor(points[:, 1] / self.cell_m).astype(np.intp) - self.j0
+        return np.clip(i, 0, CELLS - 1), np.clip(j, 0, CELLS - 1)
+
+    def clearances_m(self, points: Array) -> Array:
+        """`clearance_m` of points (n, 2)."""
+        free: Array = self.clearance[self.cells(points)].astype(np.float64)
+        return free * self.cell_m
+
+    # ------------------------------------------------------------------ seeing
+
+    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float) -> None:
+        """Take a scan.
+
+        Args:
+            laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
+            height_m, tilt_rad: of the laser above the ground, and how far it looked down.
+        """
+        self._follow(laser)
+        angles: Array = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m), dtype=np.float64)
+        x, y = self.place(laser[0], laser[1])
+        cell = self.cell_m
+        if abs(tilt_rad) < LEVEL_RAD:
+            self._scans += 1
+            p = self.parameters
+            mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell, self.look_m / cell,
+                       p.coverage_m / cell, p.join_m / cell)  # fmt: skip
+            self._changed(x, y, self.look_m)
+        elif tilt_rad > 0.0:
+            reach_m = self.parameters.ground_look_m
+            mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
+                        self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
+            self._changed(x, y, reach_m)
+
+    def warm(self) -> None:
+        """Take a level scan and one that looks down, and forget both."""
+        scan = LaserScan(0.0, -0.1, 0.1, read_only((1.0, 1.0, 1.0)), 3)
+        for tilt_rad in (0.0, 0.2):
+            self.add(scan, (0.0, 0.0, 0.0), 0.5, tilt_rad)
+        self.refresh(0.0)
+        self.forget((0.0, 0.0, 0.0))
+
+    def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
+        """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
+        reach = math.ceil(radius_m / self.cell_m)
+        i, j = self.cell(x_m, y_m)
+        for a in range(max(0, i - reach), min(CELLS, i + reach + 1)):
+            for b in range(max(0, j - reach), min(CELLS, j + reach + 1)):
+                if math.hypot(a - i, b - j) <= reach:
+                    self.low_s[a, b] = now_s
+        self._changed(float(i), float(j), radius_m)
+
+    def refresh(self, now_s: float) -> None:
+        """Bring `clearance` up to date where something changed."""
+        if self._window is None:
+            return
+        keep = math.ceil(self.far_cells)
+        low_i, low_j, high_i, high_j = self._window
+        i0, j0 = max(0, math.floor(low_i) - 2 * keep), max(0, math.floor(low_j) - 2 * keep)
+        i1, j1 = min(CELLS, math.ceil(high_i) + 2 * keep), min(CELLS, math.ceil(high_j) + 2 * keep)
+        oldest_s = max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
+        clearances(self.evidence, self.low_s, oldest_s, i0, i1, j0, j1, self.clearance, keep, self.far_cells)
+        self._window = None
+
+    def _changed(self, i: float, j: float, reach_m: float) -> None:
+        reach = reach_m / self.cell_m
+        window = (i - reach, j - reach, i + reach, j + reach)
+        old = self._window
+        self._window = window if old is None else (min(old[0], window[0]), min(old[1], window[1]), max(old[2], window[2]), max(old[3], window[3]))
+
+    def _follow(self, robot: Planar) -> None:
+        """Move the grid along when the robot comes within a quarter of its edge; what falls off is forgotten."""
+        i, j = self.place(robot[0], robot[1])
+        quarter = CELLS // 4
+        shift_i = 0 if quarter <= i < CELLS - quarter else math.floor(i) - CELLS // 2
+        shift_j = 0 if quarter <= j < CELLS - quarter else math.floor(j) - CELLS // 2
+        if not (shift_i or shift_j):
+            return
+        for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
+                            (self.clearance, self.far_cells)):  # fmt: skip
+            _shift(grid, shift_i, shift_j, blank)
+        self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
+        self._window = None
+
+
+def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
+    """Move the contents by (-di, -dj) cells and fill with `blank`."""
+    old = grid.copy()
+    grid[:] = blank
+    n = grid.shape[0]
+    if abs(di) < n and abs(dj) < n:
+        grid[max(0, -di) : n - max(0, di), max(0, -dj) : n - max(0, dj)] = old[max(0, di) : n - max(0, -di), max(0, dj) : n - max(0, -dj)]

@@ -1,0 +1,140 @@
+"""The search for a way over the local map: cheapest first, in cells. Places are flat indices `i * n + j`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pluto_bt.maps.kernel import inline_kernel, kernel
+from pluto_bt.skills.map_kernels import Bytes, Counts, Floats
+
+Array = NDArray[np.float64]
+
+HOME_X, HOME_Y, COS, SIN, BASE, HEIGHT, EDGE = range(7)  # of the rectangle, in cells; BASE <= 0 = there is none
+NARROW, MIDDLE, UNKNOWN = 3.0, 1.0, 0.3  # what a step costs more: where it is narrower than a path, beside the middle of the street, unseen
+TIGHT = 6.0  # where the robot stands nearer to something than the narrowest way allows
+GREED = 1.5  # the rest of the way counts more than it must: far fewer cells are looked at, and the way is hardly longer
+SIDE = 2  # a place is worth going to if much of the block of (2 * SIDE + 1)² cells around it is not covered
+WORTH = 0.4
+
+
+@inline_kernel
+def inside_m(i: int, j: int, rectangle: Array) -> float:
+    """How many cells a cell lies inside the nearest side of the rectangle."""
+    dx, dy = i + 0.5 - rectangle[HOME_X], j + 0.5 - rectangle[HOME_Y]
+    x, y = rectangle[COS] * dx + rectangle[SIN] * dy, rectangle[COS] * dy - rectangle[SIN] * dx
+    return float(min(min(x, rectangle[HEIGHT] - x), rectangle[BASE] - abs(y)))
+
+
+@kernel
+def push(keys: Floats, places: Counts, count: int, key: float, place: int) -> int:
+    """Put an entry on the heap; gives the new count. A full heap drops it."""
+    if count >= keys.shape[0]:
+        return count
+    at = count
+    while at > 0:
+        up = (at - 1) // 2
+        if keys[up] <= key:
+            break
+        keys[at], places[at] = keys[up], places[up]
+        at = up
+    keys[at], places[at] = key, place
+    return count + 1
+
+
+@kernel
+def pop(keys: Floats, places: Counts, count: int) -> int:
+    """Take the first entry off the heap: it is moved behind the end, at `count - 1`, which is the new count."""
+    count -= 1
+    first_key, first_place = keys[0], places[0]
+    key, place = keys[count], places[count]
+    at = 0
+    while True:
+        down = 2 * at + 1
+        if down >= count:
+            break
+        if down + 1 < count and keys[down + 1] < keys[down]:
+            down += 1
+        if keys[down] >= key:
+            break
+        keys[at], places[at] = keys[down], places[down]
+        at = down
+    keys[at], places[at] = key, place
+    keys[count], places[count] = first_key, first_place
+    return count
+
+
+@kernel
+def is_worth(i: int, j: int, covered: Bytes, evidence: Bytes, rectangle: Array) -> bool:
+    """True if much around a cell that is not covered itself is not covered either, and lies inside the rectangle."""
+    size = covered.shape[0]
+    if covered[i, j] != 0:
+        return False
+    new, all_ = 0, 0
+    for a in range(max(0, i - SIDE), min(size, i + SIDE + 1)):
+        for b in range(max(0, j - SIDE), min(size, j + SIDE + 1)):
+            if rectangle[BASE] <= 0.0 or inside_m(a, b, rectangle) >= 0.0:
+                all_ += 1
+                if covered[a, b] == 0 and evidence[a, b] <= 0:
+                    new += 1
+    return all_ > 0 and new >= WORTH * all_
+
+
+@kernel
+def search(
+    evidence: Bytes, covered: Bytes, clearance: Floats, start: tuple[int, int], goal: tuple[int, int], goal_reach: float, rectangle: Array,
+    least: float, half: float, wide: float, relaxed: float, room: float, cost: Floats, came: Counts, keys: Floats, places: Counts,
+) -> int:  # fmt: skip
+    """The cheapest way from `start` to within `goal_reach` of `goal`, or (goal_reach < 0) to the nearest place worth covering.
+
+    Args:
+        least: clearance without which nothing passes, except within `relaxed` of start and goal.
+        room: clearance that a place worth covering must have, so that the robot can turn there.
+        half: clearance of an open path; narrower costs more. wide: clearance from which on more is not better.
+        cost, came, keys, places: working memory; `came` holds the way back, place by place.
+    Returns: the place where the way ends, or -1.
+    """
+    size = evidence.shape[0]
+    for i in range(size):
+        for j in range(size):
+            cost[i * size + j] = np.inf
+    begin = start[0] * size + start[1]
+    cost[begin], came[begin] = 0.0, begin
+    count = push(keys, places, 0, 0.0, begin)
+    while count > 0:
+        count = pop(keys, places, count)
+        at = int(places[count])
+        i, j = at // size, at % size
+        rest = GREED * max(0.0, math.hypot(goal[0] - i, goal[1] - j) - goal_reach) if goal_reach >= 0.0 else 0.0
+        if keys[count] > cost[at] + rest + 0.01:
+            continue  # a cheaper way here was found later
+        if goal_reach >= 0.0:
+            if math.hypot(goal[0] - i, goal[1] - j) <= goal_reach:
+                return at
+        elif clearance[i, j] >= room and is_worth(i, j, covered, evidence, rectangle):
+            return at
+        for di in range(-1, 2):
+            for dj in range(-1, 2):
+                a, b = i + di, j + dj
+                if (di == 0 and dj == 0) or not (0 <= a < size and 0 <= b < size) or evidence[a, b] > 0:
+                    continue
+                free = clearance[a, b]
+                from_end = min(math.hypot(a - start[0], b - start[1]), math.hypot(a - goal[0], b - goal[1]) if goal_reach >= 0.0 else 1e9)
+                if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (rectangle[EDGE] if from_end > relaxed else -0.5):
+                    continue
+                factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
+                if free < half:
+                    factor += NARROW * (half - max(free, least)) / (half - least)
+                if free < least:
+                    if from_end > relaxed or free < 1.0:
+                        continue
+                    factor += TIGHT
+                new = cost[at] + factor * (1.0 if di == 0 or dj == 0 else 1.41421356)
+                to = a * size + b
+                if new < cost[to] - 1e-4:
+                    cost[to], came[to] = new, at
+                    ahead = GREED * max(0.0, math.hypot(goal[0] - a, goal[1] - b) - goal_reach) if goal_reach >= 0.0 else 0.0
+                    count = push(keys, places, count, new + ahead, to)
+    return -1

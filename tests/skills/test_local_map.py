@@ -1,0 +1,122 @@
+"""The local map: what scans enter, what they take back, how it goes along; clearance against a slow twin."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.maps.scene import Scene
+from pluto_bt.maps.world import Shape, World
+from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.motion_parameters import MotionParameters
+
+ANGLES = -math.pi / 2.0 + math.radians(0.5) * np.arange(361)
+HEIGHT_M = 0.6
+
+
+def box(id: str, x0: float, y0: float, x1: float, y1: float, height_m: float = 2.0, kind: str = "polygon") -> Shape:
+    return Shape(id, kind, np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), 0.0, height_m)
+
+
+def scan(scene: Scene, pose: tuple[float, float, float], tilt_rad: float = 0.0, stamp_s: float = 0.0) -> LaserScan:
+    ranges = np.zeros(361)
+    scene.scan(pose, HEIGHT_M, tilt_rad, ANGLES, 80.0, ranges)
+    return LaserScan(stamp_s, ANGLES[0], math.radians(0.5), read_only(ranges), 361)
+
+
+def seen(scene: Scene, *poses: tuple[float, float, float], tilt_rad: float = 0.0, times: int = 3) -> LocalMap:
+    map = LocalMap(MotionParameters())
+    map.forget(poses[0])
+    for k in range(times):
+        for pose in poses:
+            map.add(scan(scene, pose, tilt_rad, 0.5 * k), pose, HEIGHT_M, tilt_rad)
+    map.refresh(0.5 * times)
+    return map
+
+
+def stands(map: LocalMap, x: float, y: float) -> bool:
+    return bool(map.evidence[map.cell(x, y)] > 0)
+
+
+def test_a_wall_stands_the_way_to_it_is_free_and_behind_it_nothing_is_known() -> None:
+    map = seen(Scene(World("w", shapes=(box("house", 5.0, -3.0, 9.0, 3.0),))), (0.0, 0.0, 0.0))
+    assert stands(map, 5.05, 0.0) and stands(map, 5.05, 2.0)
+    assert map.evidence[map.cell(3.0, 0.0)] < 0
+    assert map.evidence[map.cell(7.0, 0.0)] == 0
+    assert map.clearance_m(3.0, 0.0) == pytest.approx(2.0, abs=0.4)
+
+
+def test_what_has_walked_on_is_gone_after_a_few_scans() -> None:
+    person = Scene(World("w", shapes=(box("person", 3.0, -0.2, 3.4, 0.2),)))
+    map = seen(person, (0.0, 0.0, 0.0))
+    assert stands(map, 3.05, 0.0)
+    person.remove("person")
+    for _ in range(4):
+        map.add(scan(person, (0.0, 0.0, 0.0)), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    assert not stands(map, 3.05, 0.0)
+
+
+def test_one_lost_echo_makes_no_hole_in_a_wall_and_nothing_behind_it() -> None:
+    scene = Scene(World("w", shapes=(box("house", 5.0, -3.0, 9.0, 3.0),)))
+    map = seen(scene, (0.0, 0.0, 0.0))
+    ranges = scan(scene, (0.0, 0.0, 0.0)).ranges_m.copy()
+    ranges[180] = 80.0
+    for _ in range(5):
+        map.add(LaserScan(0.0, ANGLES[0], math.radians(0.5), read_only(ranges), 361), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    assert stands(map, 5.05, 0.0)
+    assert map.evidence[map.cell(8.0, 0.0)] == 0
+
+
+def test_scans_full_of_nonsense_say_nothing() -> None:
+    map = LocalMap(MotionParameters())
+    for value in (math.nan, -1.0, 0.0):
+        map.add(LaserScan(0.0, ANGLES[0], math.radians(0.5), read_only(np.full(361, value)), 361), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    assert not map.evidence.any()
+
+
+@pytest.mark.parametrize(
+    ("shape", "x_m"), [(box("pit", 2.5, -1.0, 4.0, 1.0, kind="hole"), 3.4), (box("kerb", 2.5, -1.0, 4.0, 1.0, 0.2), 2.5)], ids=["a hole", "a kerb"]
+)
+def test_a_scan_that_looks_down_finds_what_a_level_one_passes_over(shape: Shape, x_m: float) -> None:
+    scene = Scene(World("w", shapes=(shape,)))
+    assert seen(scene, (0.0, 0.0, 0.0)).clearance_m(x_m, 0.0) > 1.0
+    map = seen(scene, (0.0, 0.0, 0.0), tilt_rad=math.radians(10.0))
+    assert map.clearance_m(x_m, 0.0) < 0.5
+
+
+def test_level_ground_is_no_obstacle_to_a_scan_that_looks_down() -> None:
+    map = seen(Scene(World("w")), (0.0, 0.0, 0.3), tilt_rad=math.radians(10.0))
+    assert not (map.low_s > 0.0).any()
+
+
+def test_the_map_goes_along_with_the_robot_and_keeps_what_is_still_inside() -> None:
+    scene = Scene(World("w", shapes=(box("house", 45.0, 5.0, 46.0, 6.0),)))
+    map = LocalMap(MotionParameters())
+    map.add(scan(scene, (38.0, 5.5, 0.0)), (38.0, 5.5, 0.0), HEIGHT_M, 0.0)
+    assert stands(map, 45.05, 5.5)
+    before = (map.i0, map.j0)
+    map.add(scan(scene, (60.0, 5.5, math.pi)), (60.0, 5.5, math.pi), HEIGHT_M, 0.0)
+    assert (map.i0, map.j0) != before
+    assert stands(map, 45.05, 5.5) and stands(map, 46.05, 5.5)
+    assert map.has_inside(60.0 + 0.4 * CELLS * map.cell_m, 5.5)
+
+
+@given(seed=st.integers(0, 1000))
+@settings(max_examples=15, deadline=None)
+def test_clearance_is_the_distance_to_the_nearest_thing_but_for_eight_percent(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    map = LocalMap(MotionParameters())
+    i, j = map.cell(0.0, 0.0)
+    here = np.array((i, j))
+    things = here + rng.integers(-18, 18, (int(rng.integers(1, 8)), 2))
+    map.evidence[things[:, 0], things[:, 1]] = 6
+    map._changed(i, j, 10.0)
+    map.refresh(0.0)
+    for a, b in here + rng.integers(-15, 15, (30, 2)):
+        true = min(map.far_cells, float(np.hypot(things[:, 0] - a, things[:, 1] - b).min()))
+        assert true - 1e-3 <= map.clearance[a, b] <= 1.09 * true + 1e-4

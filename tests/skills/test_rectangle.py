@@ -1,0 +1,45 @@
+"""The rectangle in its frame, on paper and by properties."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from pluto_bt.skills.rectangle import Rectangle
+
+EAST = Rectangle(3.0, 10.0, (1.0, 2.0, 0.0))
+NORTH = Rectangle(3.0, 10.0, (1.0, 2.0, math.pi / 2.0))
+NUMBERS = st.floats(-50.0, 50.0)
+
+
+@pytest.mark.parametrize(
+    ("rectangle", "point", "depth_m"),
+    [
+        (EAST, (1.0, 2.0), 0.0),  # home lies on the base
+        (EAST, (6.0, 2.0), 3.0),
+        (EAST, (10.5, 2.0), 0.5),
+        (EAST, (6.0, 4.5), 0.5),
+        (EAST, (6.0, 6.0), -1.0),
+        (EAST, (0.0, 2.0), -1.0),
+        (NORTH, (1.0, 7.0), 3.0),
+        (NORTH, (1.0, 13.0), -1.0),
+        (NORTH, (-1.5, 7.0), 0.5),
+    ],
+)
+def test_how_deep_inside_a_point_lies(rectangle: Rectangle, point: tuple[float, float], depth_m: float) -> None:
+    assert rectangle.depth_m(*point) == pytest.approx(depth_m)
+
+
+def test_who_stands_on_the_base_as_well_as_a_pose_can_tell_is_inside() -> None:
+    assert EAST.holds(0.8, 2.0) and not EAST.holds(0.6, 2.0)
+
+
+@given(x=NUMBERS, y=NUMBERS, fx=NUMBERS, fy=NUMBERS, turn=st.floats(-3.0, 3.0))
+def test_a_point_lies_as_deep_whatever_frame_it_is_looked_at_from(x: float, y: float, fx: float, fy: float, turn: float) -> None:
+    seen = NORTH.seen_from((fx, fy, turn))
+    dx, dy = x - fx, y - fy
+    px, py = math.cos(turn) * dx + math.sin(turn) * dy, math.cos(turn) * dy - math.sin(turn) * dx
+    assert seen.depth_m(px, py) == pytest.approx(NORTH.depth_m(x, y), abs=1e-9)

@@ -1,0 +1,222 @@
+"""Stories of raw commands: 42 to 46 posted to motion as the gateway posts them, while a mission only waits."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LocalMapState
+from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.runner import Runner, make_runner
+from pluto_bt.runtime.clock import NS
+
+WAIT = '<root BTCPP_format="4"><BehaviorTree ID="wait"><Sleep msec="100000000"/></BehaviorTree></root>'
+STREET = """<world name="lane" seed="1">
+  <wall id="lane">0,0 30,0 30,8 0,8 0,0</wall> {more}
+  <robot platform="atrv2" x="3" y="4" theta_deg="0"/>
+</world>"""
+
+
+class Robot:
+    """A running robot that a test commands by hand; `codes` are the different (element[2], element[3]) that motion has shown."""
+
+    def __init__(self, folder: Path, world: str, seed: int = 1) -> None:
+        (folder / "wait.xml").write_text(WAIT, encoding="utf-8")
+        (folder / "world.xml").write_text(world, encoding="utf-8")
+        inputs = read_inputs(Request(str(folder / "wait.xml"), world=str(folder / "world.xml"), seed=str(seed)))
+        self.runner: Runner = make_runner(inputs)
+        self.system = self.runner.system
+        self.codes: list[tuple[int, int]] = []
+        self.links: list[tuple[int, int]] = []
+        self.deepest = math.inf  # how far inside the rectangle the robot really was at the worst
+        self.system.board.on_change("motion/status", self._note)
+        self.system.executive.core.start(self.runner.mission)
+        self.system.start_parts()
+        self.system.scheduler.start()
+        self.system.scheduler.run_until(NS // 2)
+
+    @property
+    def now_s(self) -> float:
+        return self.system.clock.now_s()
+
+    @property
+    def status(self) -> FVectorState:
+        sample = self.system.board.newest("motion/status")
+        assert sample is not None and isinstance(sample.value, FVectorState)
+        return sample.value
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        return self.system.simulator.pose
+
+    def order(self, flags: int, position: Any = (0.0, 0.0), velocity: Any = (0.0, 0.0), force: Any = (0.0,)) -> None:
+        """Post and forget the codes shown so far."""
+        self.codes.clear()
+        self.links.clear()
+        assert self.system.inboxes["motion"].post("operator", ActuatorState(self.now_s, flags, position, velocity, (0.0, 0.0), force)) == ""
+
+    def run(self, seconds: float, until: Any = lambda: False) -> bool:
+        """Let time pass; True as soon as `until` holds."""
+        end_ns = self.system.clock.now_ns() + round(seconds * NS)
+        while self.system.clock.now_ns() < end_ns:
+            self.system.scheduler.run_until(self.system.clock.now_ns() + NS // 10)
+            rectangle = self.system._parts["motion"].component._skill.rectangle
+            if rectangle is not None:
+                self.deepest = min(self.deepest, rectangle.depth_m(*self.pose[:2]))
+            if until():
+                return True
+        return False
+
+    def is_at_rest(self) -> bool:
+        return self.status.element[3] in (0, -1)
+
+    def _note(self) -> None:
+        code = (self.status.element[2], self.status.element[3])
+        if not self.codes or self.codes[-1] != code:
+            self.codes.append(code)
+        link = (self.status.element[0], self.status.element[1])
+        if not self.links or self.links[-1] != link:
+            self.links.append(link)
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Any:
+    return lambda more="", seed=1: Robot(tmp_path, STREET.format(more=more), seed)
+
+
+def test_moveto_shows_scanning_following_near_and_at_goal(robot: Any) -> None:
+    r = robot()
+    r.order(42, (14.0, 4.0))
+    assert r.run(60.0, r.is_at_rest)
+    assert r.codes[:1] == [(-1, 1)] or r.codes[1:2] == [(-1, 1)]
+    shown = r.codes[r.codes.index((-1, 1)) :]
+    assert shown == [(-1, 1), (-1, 3), (-2, 3), (1, 0)]
+    r.run(6.0)
+    assert r.status.element == (0, 1, 1, 0), "reached stays until the next command, and nothing times out below it"
+    assert math.dist(r.pose[:2], (14.0, 4.0)) < 0.5
+    r.order(0)
+    r.run(0.3)
+    assert r.status.element[2:] == (0, 0)
+
+
+@pytest.mark.parametrize("flags", [0, 10, 31, 32])
+def test_a_stopped_moveto_shows_minus_one_and_goes_on_with_45(robot: Any, flags: int) -> None:
+    r = robot()
+    r.order(42, (20.0, 4.0))
+    r.run(15.0)
+    assert r.status.element[2:] == (-1, 3)
+    r.order(flags, r.pose[:2])
+    r.run(3.0)
+    assert r.status.element[2:] == (-1, 0)
+    standing = r.pose
+    r.run(3.0)
+    assert math.dist(standing[:2], r.pose[:2]) < 0.02
+    r.order(45)
+    r.run(1.0)
+    assert r.status.element[2:] == (-1, 1)
+    assert r.run(90.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, 0)
+    assert math.dist(r.pose[:2], (20.0, 4.0)) < 0.6
+
+
+def test_an_operators_stop_ends_a_job_at_once_and_keeps_it(robot: Any) -> None:
+    r = robot()
+    r.order(42, (20.0, 4.0))
+    r.run(15.0)
+    r.system.stop_robot("operator")
+    r.run(0.2)
+    assert (r.status.reason, r.status.element[2:]) == ("stopped", (-1, 0))
+    r.run(2.0)
+    assert r.system.simulator.velocity[0] == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("orders", "reason"),
+    [
+        ([(45, (0, 0), (0, 0))], "nothing-to-resume"),
+        ([(46, (2.5, 4.0), (3.0, 10.0)), (42, (20.0, 4.0), (0, 0))], "outside-rectangle"),
+        ([(46, (10.0, 4.0), (3.0, 10.0)), (42, (12.0, 4.0), (0, 0))], "outside-rectangle"),
+        ([(46, (10.0, 4.0), (3.0, 10.0)), (43, (0, 0), (0, 0))], "outside-rectangle"),
+        ([(44, (0, 0), (-1.0, 5.0))], "bad-command"),
+        ([(44, (0, 0), (2.0, math.inf))], "bad-command"),
+        ([(42, (math.nan, 1.0), (0, 0))], "bad-command"),
+        ([(43, (0, 0), (2.0, 1.0))], "no-object"),
+    ],
+)
+def test_what_cannot_be_done_is_told_with_its_reason_and_nothing_moves(robot: Any, orders: Any, reason: str) -> None:
+    r = robot()
+    for flags, position, velocity in orders:
+        r.order(flags, position, velocity)
+        r.run(0.3)
+    r.run(20.0, lambda: r.is_at_rest() and r.status.reason != "")
+    assert (r.status.reason, r.status.element[2]) == (reason, 0)
+    assert r.is_at_rest()
+    assert math.dist(r.pose[:2], (3.0, 4.0)) < 0.02
+
+
+def test_a_goal_behind_walls_fails_with_no_path(robot: Any) -> None:
+    r = robot('<wall id="shut">10,0 10,8</wall>')
+    r.order(42, (20.0, 4.0))
+    assert r.run(200.0, r.is_at_rest)
+    assert (r.status.reason, r.status.element[2:]) == ("no-path", (0, 0))
+
+
+def test_46_sets_and_removes_the_rectangle(robot: Any) -> None:
+    r = robot()
+    r.order(46, (2.5, 4.0), (3.0, 20.0))
+    r.run(0.3)
+    assert r.status.element[2:] == (0, -1)
+    r.order(46, (0.0, 0.0), (0.0, 5.0))
+    r.run(0.3)
+    assert r.status.element[2:] == (0, 0)
+
+
+def test_minus_one_stops_motion_with_its_job(robot: Any) -> None:
+    r = robot()
+    r.order(42, (20.0, 4.0))
+    r.run(10.0)
+    r.order(-1)
+    r.run(3.0)
+    assert r.status.element[3] == -10
+    assert r.system.simulator.velocity[0] == pytest.approx(0.0, abs=1e-3)
+    assert r.system.executive.core.job.is_over
+
+
+def test_explore_covers_its_rectangle_and_comes_home(robot: Any) -> None:
+    r = robot('<circle id="tree" x="9" y="3" r="0.4"/>')
+    home = r.pose
+    r.order(44, velocity=(3.5, 18.0))
+    r.run(1.0)
+    assert r.status.element[2:] == (0, 1)
+    assert r.run(300.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, -1), r.status.text
+    kinds = [code for code in r.codes if code[0] in (-1, -2, 1)]
+    assert kinds[0] == (-1, 1) and (-2, 3) in kinds, "the home-coming is a moveto"
+    assert math.dist(r.pose[:2], home[:2]) < 0.6
+    assert r.deepest > -0.1
+    shown = r.system.board.newest("map/local").value
+    assert isinstance(shown, LocalMapState) and shown.covered_m2 > 0.9 * 7.0 * 18.0 * 0.95
+
+
+def test_45_with_nothing_stopped_explores_the_rectangle_of_46(robot: Any) -> None:
+    r = robot()
+    r.order(46, (2.8, 4.0), (3.0, 8.0))
+    r.run(0.3)
+    r.order(45)
+    assert r.run(200.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, -1)
+    assert math.dist(r.pose[:2], (2.8, 4.0)) < 0.6
+
+
+def test_investigate_approaches_and_circles(robot: Any) -> None:
+    r = robot('<circle id="bin" x="12" y="4" r="0.4"/>')
+    r.order(43, velocity=(2.0, 1.0))
+    away: list[float] = []
+    assert r.run(200.0, lambda: away.append(math.dist(r.pose[:2], (12.0, 4.0))) or r.is_at_rest() if r.status.element[3] != 11 else False)
+    assert r.status.element[2:] == (2, 0), r.status.text
+    assert [code for code in r.codes if code[1] in (11, 12)] == [(0, 11), (0, 12)]
+    assert max(abs(distance - 2.0) for distance in away) < 0.2
+    assert r.system.board.newest("arm/state").value.position[0] == 1.0
