@@ -11,6 +11,7 @@ from py_trees.ports import NoDataAvailable
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.reasons import WAITING
 from pluto_bt.behaviours.robot import Robot
 from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
@@ -58,14 +59,19 @@ class FindPath(Leaf):
         **MOTION_OUTPUTS,
     }
 
+    def initialise(self) -> None:
+        """Time counts from the first tick."""
+        self._start_s = self.now_s()
+
     def update(self) -> Status:
-        """Answers at once."""
+        """Answers at once, unless it has to wait for a pose."""
         robot = self.robot
         if robot is None:
             return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            return self.fail("no-pose", "it is not known where the robot is")
+            text, is_over = "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
+            return self.fail("no-pose", text) if is_over else self.wait(text)
         goal = goal_of(self)
         around.openings.turn()
         if goal is not None and is_near(around, goal):

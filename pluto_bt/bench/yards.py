@@ -54,7 +54,9 @@ class Yard:
         return float(np.count_nonzero(cells[i[inside], j[inside]] == COVERED)) / len(x)
 
 
-def _reachable(width: float, height: float, boxes: list[tuple[float, float, float, float]], start: tuple[float, float, float], rectangle: tuple[float, float]) -> Mask:
+def _reachable(
+    width: float, height: float, boxes: list[tuple[float, float, float, float]], start: tuple[float, float, float], rectangle: tuple[float, float]
+) -> Mask:
     x, y = np.meshgrid(np.arange(0.0, width, CELL_M) + CELL_M / 2, np.arange(0.0, height, CELL_M) + CELL_M / 2, indexing="ij")
     near = np.full(x.shape, math.inf)
     for x0, y0, x1, y1 in boxes:

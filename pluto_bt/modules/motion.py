@@ -12,13 +12,15 @@ from pluto_bt.skills.motion import Motion as Skill
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar
 
+POSE_STALE_S = 1.0  # a job may be ordered with an older pose than one may steer by
+
 
 class Motion:
     """Steps at 10 Hz, and at once when a command comes. Jobs are ordered through `context.jobs`; their trees post to the inbox `job`."""
 
     def __init__(self, context: Context) -> None:
         self._link = Link(context, "motion", "motion")
-        self._board, self._clock, self._jobs = context.board, context.clock, context.jobs
+        self._clock, self._jobs = context.clock, context.jobs
         self._avoid = context.inboxes["avoid"]
         self._job_inbox = context.inboxes.get("job")
         devices = context.platform.devices
@@ -93,7 +95,7 @@ class Motion:
     def _where(self, now_s: float) -> Planar | None:
         """The pose of interface 3, None if it is missing or too old."""
         pose: Pose | None = self._pose()
-        return None if pose is None or self._board.is_stale("Localization/Pose", now_s) else (pose.pose[0], pose.pose[1], pose.pose[3])
+        return None if pose is None or now_s - pose.stamp_s > POSE_STALE_S else (pose.pose[0], pose.pose[1], pose.pose[3])
 
     def _rest(self, now_s: float) -> FVectorState:
         element: tuple[int, ...] = (int(LinkStatus.STOPPED_THREAD), int(GotoStatus.STOPPED_THREAD), 0, int(MotionStatus.STOPPED_THREAD))
