@@ -99,7 +99,7 @@ class Loop:
         if guard.ended is not None or (mission is not None and mission.is_over):
             return True
         if self._interrupt.is_set():
-            guard.end("interrupted", "interrupted by Ctrl-C")
+            guard.end("interrupted", "interrupted: Ctrl-C, SIGTERM, or the terminal was closed")
         elif limit_s is not None and system.clock.now_s() >= limit_s:
             guard.end("max-time", f"the mission was still running after --max-time {limit_s:g} s")
         else:

@@ -44,11 +44,11 @@ class Runner:
 
     @contextmanager
     def interruptible(self) -> Iterator[None]:
-        """While inside, Ctrl-C and SIGTERM stop the robot and end the run."""
+        """While inside, Ctrl-C, SIGTERM and a closed terminal stop the robot and end the run."""
         if threading.current_thread() is not threading.main_thread():
             yield
             return
-        numbers = (signal.SIGINT, signal.SIGTERM)
+        numbers = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
         old = [signal.signal(number, lambda *unused: self.loop.interrupt()) for number in numbers]
         try:
             yield

@@ -19,7 +19,8 @@ from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.robot_link import RobotLink
-from pluto_bt.runtime.clock import MonotonicClock, VirtualClock
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
+from pluto_bt.runtime.latch import OPERATOR_STOP, SafetyLatch
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.table import Module, in_start_order
@@ -45,7 +46,8 @@ MODULES: tuple[Module, ...] = (
     Module("local",     "pluto_bt.modules.local:Local",           0.0,    "estimation", critical=True, needs=("base",),                 budget_ms=2.0,
            wakes=("ATRV2/Drive/Raw", "sick/timing")),
     Module("alarms",    "pluto_bt.modules.alarms:Alarms",         0.05,   "estimation", needs=("base",),                                budget_ms=1.0),
-    Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("base",), wakes=("inbox:drive",), budget_ms=2.0),
+    Module("filter",    "pluto_bt.modules.filter:Filter",         0.05,   "chain",      critical=True, needs=("base", "local"), wakes=("inbox:filter",), budget_ms=5.0),
+    Module("drive",     "pluto_bt.modules.drive:Drive",           0.05,   "chain",      critical=True, needs=("filter",), wakes=("inbox:drive",), budget_ms=2.0),
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
@@ -54,7 +56,7 @@ MODULES: tuple[Module, ...] = (
 # fmt: on
 
 INBOXES = {  # link -> the link above, which owns its inbox
-    "base": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": "", "alarms": "",
+    "base": "filter", "filter": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": "", "alarms": "",
 }  # fmt: skip
 
 
@@ -91,7 +93,8 @@ class System:
         self.guard = Guard(self)
         self.simulator.on_software_fault = self.guard.software_fault
         self._parts: dict[str, Part] = {}
-        self.inboxes = {link: Inbox(link, self._owner_rule(above)) for link, above in INBOXES.items()}
+        self.latch = SafetyLatch()
+        self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
         has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ()), *(("arm",) if options.robot.devices.arm else ())}
         self._make_parts([row for row in modules if not row.device or row.device in has])
@@ -103,7 +106,7 @@ class System:
         context = Context(
             board=self.board, clock=self.clock, platform=self.options.robot, inboxes=self.inboxes, devices=self.simulator.devices,
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
-            order_module=self.order_module, joined=self,
+            order_module=self.order_module, silent_s=self.silent_s, latch=self.latch, joined=self,
         )  # fmt: skip
         self.robot = RobotLink(context)
         return context
@@ -130,9 +133,18 @@ class System:
                 self.board.on_change(topic.name, self._trace_command(topic.name))
         self.board.on_change("world/state", self._follow)
 
-    def _owner_rule(self, above: str) -> Callable[[str], bool]:
-        """Who may post to an inbox: the link above while it runs; else whoever is no link (the mission, the lease holder)."""
-        return lambda source: source == above if above and self.is_running(above) else source not in INBOXES
+    def _owner_rule(self, link: str, above: str) -> Callable[[str], bool]:
+        """Who may post to an inbox: the link above while it runs; else whoever is no link (the mission, the lease holder).
+
+        While the safety latch holds nobody may; but the filter still tells the base to stand still, and wrist and alarms move nobody.
+        """
+
+        def is_owner(source: str) -> bool:
+            if self.latch.held is not None and link not in ("base", "wrist", "alarms"):
+                return False
+            return source == above if above and (self.is_running(above) or link == "base") else source not in INBOXES
+
+        return is_owner
 
     def _trace_command(self, name: str) -> Callable[[], None]:
         newest = self.board.reader(name)
@@ -161,6 +173,11 @@ class System:
         part = self._parts.get(name)
         return part is None or part.is_running
 
+    def silent_s(self, name: str) -> float:
+        """Seconds since the module of that name finished a step; 0 for one that is stopped or not there."""
+        part = self._parts.get(name)
+        return 0.0 if part is None or not part.is_running else (self.clock.now_ns() - part.stepped_ns) / NS
+
     def say(self, level: str, code: str, source: str, text: str) -> None:
         """A line for operators."""
         if self._parts:
@@ -182,8 +199,19 @@ class System:
     def stop_robot(self, source: str) -> None:
         """Zero velocity at once, on every link."""
         now_s = self.clock.now_s()
-        for link in ("base", "drive", "avoid", "motion"):
+        for link in ("base", "filter", "drive", "avoid", "motion"):
             self.inboxes[link].stop(source, now_s)
+
+    def operator_stop(self, source: str) -> None:
+        """Zero velocity at once, latched until somebody commands anew; a running mission pauses. Thread-safe."""
+        self.latch.set(OPERATOR_STOP, f"{source} stopped the robot")
+        self.executive.core.pause(OPERATOR_STOP)  # before the links are stopped, so that no tick takes the stop for a failure
+        self.stop_robot(source)
+
+    def operator_resume(self) -> None:
+        """Take the operator's stop back, and let a paused mission go on; an emergency stop goes on holding. Thread-safe."""
+        self.latch.release(OPERATOR_STOP)
+        self.executive.core.resume()
 
     def start_parts(self) -> None:
         """Start every module, each after all that it needs."""

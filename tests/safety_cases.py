@@ -37,6 +37,13 @@ def scan_s(robot: RobotFile) -> float:
     return 1.0 / laser.rate_hz + laser.arrival_delay_s + robot.avoid.period_s
 
 
+def scan_age_s(robot: RobotFile) -> float:
+    """Until the stop filter finds the newest scan too old: the age of a scan that is a quarter of a period late, and a step."""
+    laser = robot.devices.laser
+    assert laser is not None
+    return laser.arrival_delay_s + 1.25 / laser.rate_hz + robot.filter.period_s
+
+
 @dataclass(frozen=True)
 class Cause:
     """One row.
@@ -76,13 +83,14 @@ CAUSES: tuple[Cause, ...] = (
           tree="<SaysItOnce/>", from_s=0.0),
     Cause("laser: fatal error", "avoidance, at the next scan", scan_s, 1.3, "avoid [0] = 7", "STOPPED max-time",
           "ranges come again (about 20 s); the drive goes on by itself", fault("laser", "fatal")),
-    Cause("laser: silent", "avoidance, by the scan's age", lambda robot: robot.avoid.laser_stale_s + robot.avoid.period_s, 1.5, "avoid [0] = 6",
+    Cause("laser: silent", "stop filter, by the scan's age", scan_age_s, 1.2, "avoid [0] = 6",
           "FAILURE laser-stale", "scans come again within 5 s", fault("laser", "off")),
     Cause("laser: no numbers", "avoidance, by the share of holes", scan_s, 1.3, "avoid [0] = 6", "FAILURE laser-stale", "as above",
           fault("laser", "nan")),
     Cause("laser: always the same", "avoidance, after 3 cm of driving", scan_s, 1.3, "avoid [0] = 6", "FAILURE laser-stale", "as above",
           fault("laser", "stuck")),
-    Cause("sonar: silent", "avoidance, by the echoes' age", lambda robot: robot.avoid.sonar_stale_s + robot.avoid.period_s, 1.5, "avoid [0] = 3",
+    Cause("sonar: silent", "avoidance, by the echoes' age; the stop filter slows before",
+          lambda robot: robot.avoid.sonar_stale_s + robot.avoid.period_s, 1.3, "avoid [0] = 3",
           "FAILURE sonar-stale", "echoes come again within 5 s", fault("sonar", "off")),
     Cause("odometry: silent", "drive, by its age", lambda robot: robot.drive.odometry_stale_s + robot.drive.period_s, 1.3,
           "drive: odometry-stale", "STOPPED base-lost", "odometry comes again within 2 s", fault("odometry", "off")),

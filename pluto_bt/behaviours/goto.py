@@ -10,6 +10,7 @@ from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, Motio
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.codes import CommandType, GotoStatus, LinkStatus
+from pluto_bt.skills.map_area import MapArea
 
 
 class GoTo(MotionLeaf):
@@ -26,6 +27,8 @@ class GoTo(MotionLeaf):
     def begin(self, robot: Robot) -> Status | None:
         """One command; goto refreshes itself."""
         self._goal: tuple[float, float] = self.get_input("goal")
+        if not MapArea.of(robot.map).has_point(*self._goal):
+            return self.fail("outside-map", f"goal {self._goal[0]:g};{self._goal[1]:g} is outside the mapped area")
         turn_radps = math.radians(robot.platform.limits.max_turn_rate_dps)
         velocity = (self.max_speed_mps(robot), turn_radps)
         self.post(robot, CommandType.GOTO, self._goal, velocity, float(self.get_input("tolerance_m")), float(self.get_input("force")))

@@ -19,7 +19,6 @@ from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
-PAUSE_S: Final = 0.5  # a longer gap between two ticks: the mission was paused
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
 MOTION_INPUTS: Final = {
@@ -36,6 +35,7 @@ class MotionLeaf(Leaf):
     def initialise(self) -> None:
         """Forget the last run; the command itself goes out in the first `update`."""
         self._began = False
+        self._resumes = 0
         self._moves = False
         self._ticket: Ticket | None = None
         self._was_accepted = False
@@ -49,11 +49,12 @@ class MotionLeaf(Leaf):
         if robot is None:
             return self.fail("not-connected", "no robot")
         gap_s, self._last_s = now_s - self._last_s, now_s
+        was_paused, self._resumes = robot.resumes != self._resumes, robot.resumes
         if not self._began:
             self._began = True
             ended = self.begin(robot)
             return self.wait("starting") if ended is None else ended
-        if gap_s > PAUSE_S:  # time in which the mission was paused does not count
+        if was_paused:  # that time does not count
             self._start_s += gap_s
             self.resume(robot)
         if self.elapsed_s >= self._timeout_s:

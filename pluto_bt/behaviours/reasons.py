@@ -30,6 +30,8 @@ REASONS: Final[dict[str, Reason]] = {
     "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
     "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid and drive"),
     "command-timeout": Reason("drive had no new command for 4 s and stopped", "send commands more often, or use a leaf that refreshes its command"),
+    "estop": Reason("the emergency stop is latched", "see to the cause, release the stop, then resume the mission or command anew"),
+    "executive-silent": Reason("the executive has stopped working, so nothing may move", "look at the leaf or module named in the events"),
     "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it"),
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
@@ -40,7 +42,9 @@ REASONS: Final[dict[str, Reason]] = {
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
     "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
     "nothing-to-resume": Reason("nothing was stopped, and no rectangle was ever set", "start the motion anew"),
+    "odometry-frozen": Reason("the wheels are told to turn and the encoders stand still", "free the wheels, or check the encoders"),
     "odometry-stale": Reason("the base delivers no odometry", "check the base"),
+    "operator-stop": Reason("an operator stopped the robot and the mission waits", "resume the mission or send a new command"),
     "outside-map": Reason("the goal, or the straight way to it, leaves the mapped area", "choose a goal inside the mapped area, in straight reach"),
     "outside-rectangle": Reason("the goal or the start is outside the rectangle", "choose a goal inside, or set another rectangle"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
@@ -49,6 +53,7 @@ REASONS: Final[dict[str, Reason]] = {
     "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near"),
     "tilted": Reason("the robot leans farther than the platform allows", "bring it to level ground"),
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
+    "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
 
@@ -60,6 +65,7 @@ WAITING: Final[dict[str, float]] = {
     "sonar-stale": 5.0,
     "no-pose": 3.0,
     "odometry-stale": 3.0,
+    "odometry-frozen": 10.0,  # the wheels try again every second; escaping from it is another leaf's work
     "chain-stopped": 1.0,
     "stopped": 1.0,
 }

@@ -36,6 +36,10 @@ class Robot(Protocol):
         """The a-priori map."""
 
     @property
+    def resumes(self) -> int:
+        """How often the mission has gone on after a pause; a motion leaf that sees it grow commands again."""
+
+    @property
     def surroundings(self) -> Surroundings:
         """The local map and what belongs to it."""
 

@@ -11,6 +11,7 @@ BENCHES = {
     "stack": "the whole robot in lockstep: × real time, and where the time goes",
     "rays": "laser scans against the plain versions",
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
+    "stop-times": "from a cause to zero velocity, 1000 trials each",
     "tick": "a tick of the tree against stock py_trees",
     "patrols": "patrols over random courses in places nobody tuned to",
     "movement": "moveto, explore and investigate in worlds drawn at random",
@@ -35,7 +36,7 @@ def main(argv: list[str]) -> int:
         return 2
     for name in args.name or BENCHES:
         print(f"{name}: {BENCHES[name]}   (repeat: pluto bench {name})")
-        for row in importlib.import_module(f"pluto_bt.bench.{name}").run():
+        for row in importlib.import_module(f"pluto_bt.bench.{name.replace('-', '_')}").run():
             value = f"{row.value:.4g} {row.unit}".rstrip()
             print(f"  {row.name:<46} {value:>14}   {row.target:<22} {row.note}".rstrip(), flush=True)
     return 0

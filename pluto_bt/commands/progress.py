@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import shutil
 from typing import IO
 
 from pluto_bt.blackboard.messages import Event
@@ -19,7 +21,7 @@ class Progress:
 
     def __init__(self, stream: IO[str], watch: bool = False) -> None:
         self._stream = stream
-        self._is_live = stream.isatty()
+        self._is_live = stream.isatty() and os.environ.get("TERM") != "dumb"
         self._watch = watch
         self._begun_ns = 0
         self._shown_ns = 0
@@ -64,8 +66,12 @@ class Progress:
 
             lines = [*dump(active.mission, "unicode").splitlines(), *lines]
         self._clear()
-        print("\n".join(line[:150] for line in lines), end="", file=self._stream, flush=True)
+        print("\n".join(line[: self._width()] for line in lines), end="", file=self._stream, flush=True)
         self._drawn_lines = len(lines)
+
+    def _width(self) -> int:
+        """What a line may have so that it does not wrap."""
+        return shutil.get_terminal_size().columns - 1
 
     def _clear(self) -> None:
         if self._drawn_lines:

@@ -24,6 +24,7 @@ class Address(NamedTuple):
 
 def parse_address(text: str) -> Address:
     """`HOST:PORT`, `HOST` or `:PORT`, an IPv6 host in brackets. Raises: InputError."""
+    text = f":{text}" if text.isdigit() else text  # a port alone
     host, colon, port = text.rpartition(":") if not text.endswith("]") else (text, "", "")
     if not colon:
         host, port = text, str(DEFAULT_PORT)

@@ -17,6 +17,7 @@ from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import newest
+from pluto_bt.skills import reasons
 
 STALE_AFTER_S = {topic.name: topic.stale_after_s for topic in TOPICS}
 
@@ -44,7 +45,8 @@ class Alarms:
         self._wheels_know_turns = context.platform.body.kinematics != "ackermann"
         self._body = newest(context, self._sensor)
         self._raw = newest(context, "ATRV2/Drive/Raw")
-        self._commanded = newest(context, "ATRV2/Drive/Command")
+        self._commanded, self._filter = newest(context, "ATRV2/Drive/Command"), newest(context, "filter/status")
+        self._told = (0.0, 0.0)  # what the wheels were told last, before the stop filter let go of wheels that stand still
         self._inbox = context.inboxes["alarms"]
         self._topic = context.board.publisher("imu/alarms", "alarms")
         self._last: tuple[float, float, float] | None = None  # wheels' stamp s, wheels' heading rad, body's theta rad
@@ -62,10 +64,11 @@ class Alarms:
             self._stasis.read()
             self._stuck.read()
         raw, body = self._fresh(self._raw(), "ATRV2/Drive/Raw", now_s), self._fresh(self._body(), self._sensor, now_s)
-        command = self._commanded()
+        command, verdict = self._commanded(), self._filter()
+        if isinstance(command, ActuatorState) and (verdict is None or verdict.reason != reasons.ODOMETRY_FROZEN):
+            self._told = command.velocity
         if isinstance(raw, ActuatorState):
-            commanded = command.velocity if isinstance(command, ActuatorState) else (0.0, 0.0)
-            self._stuck.step(now_s, commanded, raw.velocity)
+            self._stuck.step(now_s, self._told, raw.velocity)
         self._look_at_turns(raw, body)
         tilt = tilt_rad(body.phi_rad, body.psi_rad) if isinstance(body, ImuState) else 0.0
         self._topic.put(AlarmState(now_s, self._stasis.alarm, self._stuck.alarm, tilt > self._tilt_limit_rad, tilt, self._stasis.count), now_s)

@@ -15,6 +15,7 @@ from pluto_bt.maps.world import World
 from pluto_bt.modules.job_box import JobBox
 from pluto_bt.modules.post_box import PostBox
 from pluto_bt.runtime import Clock
+from pluto_bt.runtime.latch import SafetyLatch
 
 if TYPE_CHECKING:
     from pluto_bt.system import System
@@ -35,11 +36,13 @@ class Context:
 
     Attributes:
         platform: the robot file.
-        inboxes: by link name: base, drive, avoid, motion, wrist.
+        inboxes: by link name: base, filter, drive, avoid, motion, wrist.
         devices: by name as in `sim.Simulator.devices`.
         map: the a-priori map: the world's own unless `--map` says otherwise.
         say: (level, code, source, text) → a line in `events`.
         is_running: whether the module of that name is started (a stopped one shows −10).
+        silent_s: seconds since the module of that name finished a step; 0 for one that is stopped or not there.
+        latch: while it holds, nothing moves.
         posts: where improved poses wait for `local`.
         jobs: where motion orders the jobs 42 to 45 from the executive.
         order_module: (name, run) → start or stop a module.
@@ -54,6 +57,8 @@ class Context:
     say: Callable[[str, str, str, str], None]
     is_running: Callable[[str], bool]
     start_pose: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    silent_s: Callable[[str], float] = lambda name: 0.0
+    latch: SafetyLatch = field(default_factory=SafetyLatch)
     posts: PostBox = field(default_factory=PostBox)
     jobs: JobBox = field(default_factory=JobBox)
     order_module: Callable[[str, bool], None] = lambda name, run: None

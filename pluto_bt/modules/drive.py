@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import cast
 
+import msgspec
+
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState
 from pluto_bt.modules.calibration import CalibratedBase, read_calibration
@@ -25,11 +27,12 @@ class Drive:
     def __init__(self, context: Context) -> None:
         self._link = Link(context, "drive", "drive")
         self._clock = context.clock
-        self._base = context.inboxes["base"]
+        self._base = context.inboxes["filter"]
         self._skill = Skill(context.platform, context.parameters(DriveParameters))
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._sonar = newest(context, "ATRV2/Sonar")
         self._bumper = newest(context, "ATRV2/Bumper")
+        self._filter_status = newest(context, "filter/status")
         self._devices = context.devices
         self._say = context.say
 
@@ -58,7 +61,7 @@ class Drive:
             self._skill.accept(letter.command, now_s, amends)
         twist = self._skill.step(now_s, DriveSenses(self._raw(), self._sonar(), self._bumper()))
         self._base.post("drive", ActuatorState(now_s, 0, (0.0, 0.0), twist))
-        self._link.tell(now_s, self._skill.status(now_s), None if letter is None else letter.command)
+        self._link.tell(now_s, self._status(now_s), None if letter is None else letter.command)
 
     def stop(self) -> None:
         """The thread stops: zero velocity, and -10 for who asks."""
@@ -66,6 +69,14 @@ class Drive:
         self._link.is_running = False
         self._base.stop("drive", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
         self._link.tell(now_s, self._rest(now_s))
+
+    def _status(self, now_s: float) -> FVectorState:
+        """The drive's own status; where the stop filter lets less through than the drive gives, its verdict and the velocities it lets through."""
+        own, verdict = self._skill.status(now_s), self._filter_status()
+        if own.reason or verdict is None or not verdict.reason or verdict.reason == reasons.STOPPED:
+            return own
+        code = (own.element[0] or verdict.element[0],)
+        return msgspec.structs.replace(own, data=verdict.data, element=code, reason=verdict.reason, text=verdict.text)
 
     def _calibrate(self) -> None:
         """Write the calibration file to the base. It was good when the run began; if it no longer is, the base keeps what it has."""

@@ -14,6 +14,7 @@ from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
+from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.trees import Mission, MissionError
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
@@ -37,7 +38,7 @@ class GatewayPort:
         self._system = context.system
         self._loaded: Mission | None = None
         self._errands: dict[str, Errand] = {}
-        self._estop: str | None = None
+        self._latch = context.latch
 
     @property
     def name(self) -> str:
@@ -63,30 +64,31 @@ class GatewayPort:
 
     def stop(self, source: str) -> None:
         """Zero velocity at once; a running mission pauses."""
-        self._system.stop_robot(source)
-        self._system.executive.core.pause("operator-stop")
+        self._system.operator_stop(source)
 
     def estop(self, source: str, reason: str) -> None:
         """As stop, latched until released."""
-        self._estop = reason or "emergency stop"
+        self._latch.set(ESTOP, reason or "emergency stop")
         self.stop(source)
-        self._system.say("error", "estop", source, f"emergency stop: {self._estop}")
+        self._system.say("error", ESTOP, source, f"emergency stop: {reason or 'no reason given'}")
 
     def release_estop(self, source: str) -> None:
         """Unlatch; nothing moves by that."""
-        if self._estop is not None:
-            self._estop = None
+        if self._latch.release(ESTOP):
             self._system.say("info", "estop-released", source, "emergency stop released; nothing moves until it is commanded")
 
     def estop_reason(self) -> str | None:
         """Why the robot is latched, None if it is not."""
-        return self._estop
+        hold = self._latch.hold(ESTOP)
+        return None if hold is None else hold.text
 
     def post_command(self, target: str, command: ActuatorState, source: str) -> None:
         """Give a command to a link of the chain or to the wrist."""
         self._refuse_if_latched()
         if self._mission_runs():
             raise RefusedError("wrong-state", "a mission runs; pause it first")
+        if target != "wrist":
+            self._latch.release(OPERATOR_STOP)  # a new command is a deliberate act
         if self._system.inboxes[LINK_OF_TARGET[target]].post(source, command):
             raise RefusedError("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
 
@@ -102,6 +104,7 @@ class GatewayPort:
             fault = error.faults[0]
             code = "unknown-node" if fault.code == "unknown-node" else "bad-value"
             raise RefusedError(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
+        self._latch.release(OPERATOR_STOP)
         activity = self._system.executive.core.start_errand(mission)
         while len(self._errands) >= ERRANDS_KEPT:
             del self._errands[next(iter(self._errands))]
@@ -150,6 +153,7 @@ class GatewayPort:
                 raise RefusedError("wrong-state", 'no mission is loaded; send <mission op="load" name="…"/> first')
             if self._mission_runs():
                 raise RefusedError("wrong-state", "a mission runs; abort it first")
+            self._latch.release(OPERATOR_STOP)
             core.start(self._loaded)
         elif op == "abort":
             core.abort("operator")
@@ -158,7 +162,7 @@ class GatewayPort:
                 self._refuse_if_latched()
             if self.mission_state().state != OPS_OF_STATE[op]:
                 raise RefusedError("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
-            core.pause("operator") if op == "pause" else core.resume()
+            core.pause("operator") if op == "pause" else self._system.operator_resume()
         else:
             raise RefusedError("invalid", f'mission op="{op}" is not offered')
 
@@ -185,8 +189,9 @@ class GatewayPort:
         return state == RUNNING
 
     def _refuse_if_latched(self) -> None:
-        if self._estop is not None:
-            raise RefusedError("estopped", f"emergency stop ({self._estop}); release it first")
+        hold = self._latch.hold(ESTOP)
+        if hold is not None:
+            raise RefusedError("estopped", f"emergency stop ({hold.text}); release it first")
 
     def _load(self, text: str) -> Mission:
         mission = self._system.options.load(text)

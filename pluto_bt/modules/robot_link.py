@@ -28,6 +28,7 @@ class RobotLink:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._snapshot = context.board.snapshot(context.clock.now_s())
+        self.resumes = 0
         self.goals: list[Pair] = []  # where missions sent the robot, for pictures
         self._surroundings: Surroundings | None = None
         self._views: ScanViews | None = None
@@ -118,6 +119,10 @@ class RobotLink:
     def say(self, text: str) -> None:
         """A line for operators."""
         self._context.say("info", "say", SOURCE, text)
+
+    def resumed(self) -> None:
+        """A paused mission goes on."""
+        self.resumes += 1
 
     def stop(self) -> None:
         """Zero velocity at once; beats every command that waits."""

@@ -43,6 +43,7 @@ class Part:
         self.is_running = False
         self.steps = self.failures = self.overruns = 0
         self.total_ns = self.worst_ns = 0
+        self.stepped_ns = 0  # when it last finished a step: its sign of life
         self.error = ""
         self.fault = ""  # what a world script does to this part: "", raise, hang, slow
         self.slow_ns = 0
@@ -58,6 +59,7 @@ class Part:
         """Start the component; harmless if it runs."""
         if not self.is_running:
             self.component.start(now_ns / NS)
+            self.stepped_ns = now_ns
             self.is_running = True
 
     def stop(self) -> None:
@@ -83,6 +85,7 @@ class Part:
             if self.resume_at_ns and not self.slow_ns:
                 self._restart(now_ns)
             self.component.step(now_ns / NS)
+            self.stepped_ns = now_ns
         except Exception as error:
             self._fail(now_ns, error)
         self._account(wall_ns() - began_ns)

@@ -5,23 +5,31 @@ from __future__ import annotations
 BAD_COMMAND = "bad-command"
 BUMPER = "bumper"
 COMMAND_TIMEOUT = "command-timeout"
+ESTOP = "estop"
+EXECUTIVE_SILENT = "executive-silent"
 LASER = "laser"
 LASER_FATAL = "laser-fatal"
 LASER_STALE = "laser-stale"
 NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
 NOTHING_TO_RESUME = "nothing-to-resume"
+ODOMETRY_FROZEN = "odometry-frozen"
 ODOMETRY_STALE = "odometry-stale"
+OPERATOR_STOP = "operator-stop"
+OUTSIDE_MAP = "outside-map"
 OUTSIDE_RECTANGLE = "outside-rectangle"
 SONAR = "sonar"
 SONAR_STALE = "sonar-stale"
 STOPPED = "stopped"
 STUCK = "stuck"
+UNSEEN = "unseen"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
     BUMPER: "a bumper is or was pressed; back off, release it, then send a new command",
     COMMAND_TIMEOUT: "no new command came in time; a controlled stop",
+    ESTOP: "the emergency stop is latched; release it, then command anew",
+    EXECUTIVE_SILENT: "the executive has stopped working; nothing moves without it",
     LASER: "the laser sees an obstacle in the way; slower or stopped until it is clear",
     LASER_FATAL: "the laser has had a fatal error and is rebooting (about 20 s)",
     LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
@@ -29,9 +37,13 @@ CHAIN_REASONS: dict[str, str] = {
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
     NOTHING_TO_RESUME: "45: nothing was stopped, and no rectangle is set",
     OUTSIDE_RECTANGLE: "the goal or the start is outside the rectangle",
+    ODOMETRY_FROZEN: "the wheels are told to turn and the encoders stand still: blocked wheels or dead encoders",
     ODOMETRY_STALE: "the base's odometry is missing or too old",
+    OPERATOR_STOP: "an operator stopped the robot; resume the mission or send a new command",
+    OUTSIDE_MAP: "the motion would leave the mapped area",
     SONAR: "a sonar hears an obstacle in the way; slower or stopped until it is clear",
     SONAR_STALE: "the sonar is asked for and delivers nothing that can be trusted",
     STOPPED: "stop was commanded, or the link's thread is stopped",
     STUCK: "goto makes no progress towards the goal",
+    UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
 }

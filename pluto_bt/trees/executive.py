@@ -27,6 +27,9 @@ class Body(Protocol):
     def stop(self) -> None:
         """Zero velocity at once. Thread-safe."""
 
+    def resumed(self) -> None:
+        """A paused mission goes on: motion leaves have to command again."""
+
 
 class Activity:
     """A mission at work: its state, and why it is in it."""
@@ -149,8 +152,8 @@ class Executive:
 
     def pause(self, reason: str) -> None:
         """Stop the robot now; the mission waits for `resume`, an errand ends. Thread-safe."""
+        self._orders.append((lambda: self._pause(reason), {RUNNING: PAUSED}))  # first, so that no tick sees the stop as an interruption
         self._body.stop()
-        self._orders.append((lambda: self._pause(reason), {RUNNING: PAUSED}))
 
     def resume(self) -> None:
         """Let a paused mission go on where its tree stands; motion leaves command again when they are next ticked."""
@@ -188,6 +191,7 @@ class Executive:
             self.errand.end("preempted")
         if self.mission is not None and self.mission.state == PAUSED:
             self.mission.state, self.mission.reason = RUNNING, ""
+            self._body.resumed()
             self._say("info", "resumed", "mission goes on")
 
     def _abort(self, reason: str) -> None:

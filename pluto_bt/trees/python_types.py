@@ -54,7 +54,8 @@ def _list_of(item: Kind) -> Kind:
             raise ValueError("expected a list")
         return [item.parse(one) if isinstance(one, str) else item.cast(one) for one in value]
 
-    return Kind(f"list of {item.name}", f"{item.form}; more after ';'", parse, cast)
+    form = f"{item.form.replace(';', ',')};…" if ";" in item.form else f"{item.form}; more after ';'"  # "x,y;…": inside a list the comma parts
+    return Kind(f"list of {item.name}", form, parse, cast)
 
 
 def _numbers(items: tuple[Kind, ...]) -> Kind:

@@ -44,6 +44,7 @@ class FakeRobot:
         self.accept = True
         self.refuse = ""
         self.alarms_read = 0
+        self.resumes = 0
         self.says = FVectorState(0.0, (0.0, 0.0), (0, -1, 0, 0))
 
     def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:

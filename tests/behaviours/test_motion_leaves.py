@@ -152,6 +152,7 @@ def test_after_a_pause_the_command_is_given_again_and_the_pause_is_no_time(stage
     assert run(stage, mission, 1.0) == "RUNNING"
     stage.robot.stop()
     stage.clock.advance(60.0)
+    stage.robot.resumes += 1
     assert run(stage, mission, 0.5) == "RUNNING"
     assert stage.robot.commands[-1].position == (3.0, 4.0)
     assert run(stage, mission, 3.0) == "FAILURE"

@@ -65,7 +65,7 @@ class Rig:
         self.clock = VirtualClock()
         self.board = Blackboard(TOPICS)
         self.running = {"motion": True, "avoid": True, "drive": True}
-        above = {"base": "drive", "drive": "avoid", "avoid": "motion", "motion": ""}
+        above = {"filter": "drive", "drive": "avoid", "avoid": "motion", "motion": ""}
         self.inboxes = {name: Inbox(name, self._owner(up)) for name, up in above.items()}
         context = Context(self.board, self.clock, self.platform, self.inboxes, {}, None, lambda *line: None, self.running.__getitem__)
         context.order_module = lambda name, run: self.running.__setitem__(name, run)
@@ -106,7 +106,7 @@ class Rig:
 
     def stop(self) -> None:
         """The operator's stop."""
-        for name in ("base", "drive", "avoid", "motion"):
+        for name in ("filter", "drive", "avoid", "motion"):
             self.inboxes[name].stop("operator", self.now)
 
     def run(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
@@ -131,7 +131,7 @@ class Rig:
             name = min(self._woken)
             self._woken.discard(name)
             self.links[name].step(self.now)
-        letter = self.inboxes["base"].take()
+        letter = self.inboxes["filter"].take()
         if letter is not None:
             self._base, self._base_s = letter.command.velocity, self.now
 

@@ -93,6 +93,17 @@ def test_a_client_stops_the_robot_sends_it_on_an_errand_and_lets_the_mission_go_
     assert (code, result["result"], result["reason"], result["collisions"]) == (130, "STOPPED", "interrupted", 0)
 
 
+def test_a_stop_and_a_resume_in_one_breath_let_the_mission_go_on(robot: Robot) -> None:
+    with robot.client() as client:
+        for _ in range(4):
+            wait_until_it_moves(client)
+            client.request("stop")
+            client.request("mission", op="resume")
+        wait_until_it_moves(client)
+        state = client.request("mission", op="state")
+        assert (state.get("state"), state.get("step")) == ("running", "go"), "it neither failed nor backed off"
+
+
 def _result(client: Client) -> str:
     while True:
         message = client.receive(30.0)

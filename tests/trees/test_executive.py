@@ -20,6 +20,9 @@ class Body:
     def stop(self) -> None:
         self.stops += 1
 
+    def resumed(self) -> None:
+        pass
+
 
 def made() -> tuple[Executive, Body]:
     body = Body()

@@ -9,6 +9,8 @@ from pluto_bt.trees.dump.model import SIGNS, Drawn
 MARKS = {"": "", "IDLE": "-", "RUNNING": "*", "SUCCESS": "o", "FAILURE": "x", "SKIPPED": ">"}
 PRETTY_MARKS = {"": "", "IDLE": "·", "RUNNING": "●", "SUCCESS": "✓", "FAILURE": "✗", "SKIPPED": "»"}
 
+PLAIN_SIGNS = str.maketrans({"–": "-", "—": "-", "“": '"', "”": '"', "’": "'", "°": " deg", "×": "x", "…": "..."})
+
 
 def ascii_tree(root: Drawn) -> str:
     """Four blanks a level, only characters that every terminal has."""
@@ -18,7 +20,7 @@ def ascii_tree(root: Drawn) -> str:
 def _ascii(node: Drawn, level: int) -> Iterator[str]:
     title = node.title.replace("“", '"').replace("”", '"')
     line = f"{'    ' * level}{SIGNS[node.kind][0]} {title}{_details(node)}{_status(node, MARKS)}"
-    yield line.encode("ascii", "backslashreplace").decode()
+    yield line.translate(PLAIN_SIGNS).encode("ascii", "backslashreplace").decode()
     for child in node.children:
         yield from _ascii(child, level + 1)
 

@@ -7,6 +7,8 @@ A leaf that overrides `tick` itself is ticked by its own `tick_once()`.
 
 from __future__ import annotations
 
+import os
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -125,5 +127,7 @@ def _halt(leaf: Any) -> Callable[[], None]:
 
 
 def told(error: Exception) -> str:
-    """An exception in one line."""
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    """An exception in one line, with the place in the leaf's own file where it was raised."""
+    what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    places = [frame for frame in traceback.extract_tb(error.__traceback__) if "/pluto_bt/trees/" not in frame.filename.replace(os.sep, "/")]
+    return f"{what} ({os.path.basename(places[-1].filename)}:{places[-1].lineno})" if places else what

@@ -8,10 +8,16 @@ from pluto_bt.source import Place, did_you_mean
 from pluto_bt.trees.loader.files import MissionFiles, Model, TreeSource
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
+from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.scopes import EMPTY, Scope
-from pluto_bt.trees.values import PortProblem, literal_value
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, PortProblem, literal_value
 
 REALS = ("double", "float")
+# What a model may declare of an input, as `type`; other words are taken for C++ types that mean nothing here.
+DECLARED = {
+    "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL,
+    "point": kind_of_type(tuple[float, float]), "points": kind_of_type(list[tuple[float, float]]),
+}  # fmt: skip
 
 
 def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mapping[str, str] | None, report: Report) -> None:
@@ -38,6 +44,14 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
 
 def _write(root: Scope, name: str, text: str, type_name: str, report: Report) -> None:
     """Typed as a SubTree's literal is, but that digits for an input declared as a real number are one."""
+    kind = DECLARED.get(type_name)
+    if kind is not None:
+        try:
+            kind.parse(text)
+        except ValueError as error:
+            what = f'input "{name}" is declared as {type_name}; "{text}" is none'
+            report.error(Place(f"--port {name}={text}"), "bad-input", what, expected=kind.form, found=text, mend=str(error))
+            return
     try:
         value = literal_value(text)
         root.write(name, float(value) if type_name in REALS and isinstance(value, int) else value)

@@ -183,7 +183,7 @@ class StaticCheck:
         problem = range_problem(port, value)
         if problem:
             what = f'"{text}" is outside what port "{port.name}" allows'
-            self._report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=problem)
+            self._report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=text)
         elif has_trailing_text(port.kind, text):
             what = f'"{text}" is read as {value}'
             self._report.warning(attribute.value_place, "trailing-text", what, expected=port.form, found=text)

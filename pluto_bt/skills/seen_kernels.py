@@ -1,0 +1,200 @@
+"""The hot loops of `SeenSpace`. A space is three arrays over square cells, in the frame of dead reckoning:
+
+`seen` (n, n): when the cell was last seen to be free, s. `stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2):
+where, x m, y m; for two heights: LEVEL, the plane of the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pluto_bt.maps.kernel import inline_kernel, kernel
+from pluto_bt.skills.outline import Array
+
+CELL_M = 0.05
+LEVEL, LOW = 0, 1
+X, Y = range(2)
+NEVER = -1e18
+BEAM_SLACK_M = 0.05  # a beam that ends so little beyond a point does not prove that the point is gone: three sigma of an LMS200 and more
+CONE_SLACK_M = 0.12  # the same for an echo
+FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
+INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
+
+
+@inline_kernel
+def cell_of(x_m: float, corner_m: float) -> int:
+    """The row or column of a coordinate."""
+    return int(math.floor((x_m - corner_m) / CELL_M))  # noqa: RUF046  # a kernel's floor gives a float
+
+
+@inline_kernel
+def cells_of(apex_m: float, axis_m: float, side_m: float, corner_m: float, n: int) -> tuple[int, int]:
+    """The rows or columns that a cone covers, as a range: from its apex along its axis, with so much to each side of its end."""
+    first, last = cell_of(apex_m + min(0.0, axis_m - abs(side_m)), corner_m), cell_of(apex_m + max(0.0, axis_m + abs(side_m)), corner_m)
+    return max(0, first), min(n, last + 1)
+
+
+@kernel
+def see_beams(
+    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, first_rad: float, step_rad: float,
+    ranges_m: Array, believed: Array, stamp_s: float, most_m: float,
+) -> None:  # fmt: skip
+    """Take a level scan from (x, y): what the beams run through is free, where they end something stands.
+
+    Args:
+        ranges_m: (n,); what is not a positive number says nothing. believed: (n,) 0 = this beam's end is not believed yet.
+        most_m: beams are followed so far.
+    A beam clears only as far as its two neighbours reach too: one lost beam opens no hole in a wall. So every second beam is enough.
+    """
+    n = ranges_m.shape[0]
+    for i in range(0, n, 2):
+        free_m = ranges_m[i]
+        for j in (max(i - 1, 0), min(i + 1, n - 1)):
+            if not ranges_m[j] >= free_m:  # also NaN
+                free_m = ranges_m[j]
+        if not free_m > 0.0:
+            continue
+        free_m = min(free_m - BEAM_SLACK_M, most_m)
+        c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
+        for k in range(int(free_m / (0.7 * CELL_M)) + 1):
+            along_m = min(0.7 * CELL_M * k, free_m)
+            column, row = cell_of(x_m + c * along_m, corner_x_m), cell_of(y_m + s * along_m, corner_y_m)
+            if along_m < 0.0 or not 0 <= column < seen.shape[1] or not 0 <= row < seen.shape[0]:
+                break
+            seen[row, column] = stamp_s
+            is_older = stamps[LEVEL, row, column] > NEVER and stamps[LEVEL, row, column] < stamp_s
+            if is_older and math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
+                stamps[LEVEL, row, column] = NEVER
+    for i in range(n):
+        range_m = ranges_m[i]
+        if range_m > 0.0 and range_m < most_m and believed[i] != 0.0:
+            x, y = x_m + range_m * math.cos(first_rad + i * step_rad), y_m + range_m * math.sin(first_rad + i * step_rad)
+            put(stamps, spots, LEVEL, corner_x_m, corner_y_m, x, y, x_m, y_m, stamp_s)
+
+
+@inline_kernel
+def put(
+    stamps: Array, spots: Array, layer: int, corner_x_m: float, corner_y_m: float, x: float, y: float, from_x: float, from_y: float, stamp_s: float
+) -> None:
+    """Note a point; of several in one cell at one time the nearest to the sensor."""
+    column, row = cell_of(x, corner_x_m), cell_of(y, corner_y_m)
+    if 0 <= column < stamps.shape[2] and 0 <= row < stamps.shape[1]:
+        is_new = stamps[layer, row, column] != stamp_s
+        if is_new or math.hypot(x - from_x, y - from_y) < math.hypot(spots[layer, row, column, X] - from_x, spots[layer, row, column, Y] - from_y):
+            stamps[layer, row, column], spots[layer, row, column, X], spots[layer, row, column, Y] = stamp_s, x, y
+
+
+@kernel
+def hear_cones(
+    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float, stamp_s: float, most_m: float
+) -> None:
+    """Take a round of the sonar ring.
+
+    Args:
+        cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
+    Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
+    the part of the arc that no other cone of this round clears counts as an obstacle.
+    """
+    opening = math.tan(half_cone_rad)
+    for clears in (1, 0):
+        for k in range(cones.shape[0]):
+            x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
+            if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
+                continue
+            c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
+            far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
+            column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
+            row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
+            for row in range(row_0, row_1):
+                for column in range(column_0, column_1):
+                    dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
+                    ahead_m, aside_m, away_m = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(dx * dx + dy * dy)
+                    if ahead_m <= 0.0 or aside_m > ahead_m * opening:
+                        continue
+                    if clears == 1:
+                        if away_m < clear_m:
+                            clear_cell(seen, stamps, row, column, stamp_s)
+                    elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
+                        share = (far_m - CELL_M) / max(away_m, 1e-6)
+                        put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, stamp_s)
+
+
+@inline_kernel
+def clear_cell(seen: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
+    """The sonar hears through a cell: what was heard there is gone, and so is what the laser saw there long ago."""
+    seen[row, column] = stamp_s
+    stamps[LOW, row, column] = NEVER
+    if stamps[LEVEL, row, column] < stamp_s - FRESH_S:
+        stamps[LEVEL, row, column] = NEVER
+
+
+@inline_kernel
+def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, k: int, half_cone_rad: float) -> bool:
+    """Whether the laser knows of something in the cone about as near as the echo."""
+    x_m, y_m, reach_m, opening = cones[k, 0], cones[k, 1], cones[k, 3] + 2.0 * CONE_SLACK_M, math.tan(half_cone_rad)
+    c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
+    found = False
+    column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, stamps.shape[2])
+    row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, stamps.shape[1])
+    for row in range(row_0, row_1):
+        for column in range(column_0, column_1):
+            if stamps[LEVEL, row, column] > NEVER:
+                dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
+                ahead_m, aside_m = c * dx + s * dy, abs(c * dy - s * dx)
+                if dx * dx + dy * dy < reach_m * reach_m and aside_m < ahead_m * opening + CELL_M:
+                    found = True
+    return found
+
+
+@kernel
+def stand(
+    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float, planes: Array,
+    reach_m: float, grown_m: float, stamp_s: float, hits_since_s: float, window_m: float, out: Array,
+) -> int:  # fmt: skip
+    """Where the robot stands (and `grown_m` around) is free; gather the points around it. The outermost cell is left out: cells beside a free one
+    count as known, and the robot must not know what it is about to move into.
+
+    Args:
+        out: (n, 4) is filled: x m, y m in the robot frame, LEVEL or LOW, room for a margin.
+    Returns: how many points lie within `window_m`. Those older than `hits_since_s`, those inside the robot, and echoes where the laser sees
+        something too, are forgotten.
+    """
+    count = 0
+    c, s = math.cos(theta_rad), math.sin(theta_rad)
+    near_m = reach_m + grown_m + CELL_M
+    for row in range(max(0, cell_of(y_m - window_m, corner_y_m)), min(seen.shape[0], cell_of(y_m + window_m, corner_y_m) + 1)):
+        for column in range(max(0, cell_of(x_m - window_m, corner_x_m)), min(seen.shape[1], cell_of(x_m + window_m, corner_x_m) + 1)):
+            dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
+            if dx * dx + dy * dy < near_m * near_m and outside_m(planes, c * dx + s * dy, c * dy - s * dx) < grown_m - CELL_M:
+                seen[row, column] = stamp_s
+            for layer in range(2):
+                if stamps[layer, row, column] == NEVER:
+                    continue
+                dx, dy = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
+                px, py = c * dx + s * dy, c * dy - s * dx
+                is_old = stamps[layer, row, column] < hits_since_s or (layer == LOW and is_level_near(stamps, row, column))
+                if is_old or outside_m(planes, px, py) < INSIDE_M:
+                    stamps[layer, row, column] = NEVER
+                elif count < out.shape[0]:
+                    out[count, 0], out[count, 1], out[count, 2] = px, py, layer
+                    count += 1
+    return count
+
+
+@inline_kernel
+def is_level_near(stamps: Array, row: int, column: int) -> bool:
+    """Whether the laser sees something in this cell or one beside it: then it knows better where."""
+    found = False
+    for i in range(max(0, row - 1), min(stamps.shape[1], row + 2)):
+        for j in range(max(0, column - 1), min(stamps.shape[2], column + 2)):
+            found = found or stamps[LEVEL, i, j] > NEVER
+    return found
+
+
+@inline_kernel
+def outside_m(planes: Array, x: float, y: float) -> float:
+    """How far a point of the robot frame is outside the outline; negative inside."""
+    distance_m = -1e9
+    for k in range(planes.shape[0]):
+        distance_m = max(distance_m, planes[k, 0] * x + planes[k, 1] * y - planes[k, 2])
+    return distance_m

@@ -1,0 +1,142 @@
+"""The stop filter's own memory of space: which cells round the robot were seen free, in which something stands, which nobody ever saw.
+
+A shell round the kernels of `seen_kernels`; it rolls with the robot. Frame: dead reckoning. It shares nothing with avoidance's memory.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pluto_bt.blackboard.messages import LaserScan
+from pluto_bt.maps.platform import Sonar
+from pluto_bt.skills.outline import Array, Outline, Planar
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, hear_cones, put, see_beams, stand
+
+ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
+MOST_POINTS = 4000
+LONE_STEP_M = 0.3  # one beam so much shorter than both neighbours needs the scan before to be believed
+LEVEL_RAD = math.radians(1.5)  # a scan tilted by less counts as level
+GROUND_M = 0.05  # what a tilted beam meets lower than this is the ground
+BEHIND_M = 0.5  # echoes are used so much less far than beams, so that the laser has seen what they come from
+APEX_X, APEX_Y, AXIS, ECHO, CLEAR_TO, LEAVES = range(6)  # columns of the cones
+DEAF_M = 0.02
+ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes get lost
+
+
+class SeenSpace:
+    """Cells as far as `reach_m` to each side."""
+
+    def __init__(self, outline: Outline, reach_m: float, hear_m: float) -> None:
+        n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
+        self._outline, self._hear_m, self._reach_m = outline, hear_m, reach_m
+        self.seen: Array = np.full((n, n), NEVER)
+        self.stamps: Array = np.full((2, n, n), NEVER)
+        self.spots: Array = np.full((2, n, n, 2), NEVER)
+        self.points: Array = np.zeros((MOST_POINTS, 4))
+        self.count = 0
+        self._corner = (0, 0)  # of the lower left cell, in cells
+        self._middle: tuple[int, int] | None = None
+        self._last_ranges_m: Array | None = None
+        self._rounds: list[Array] = []
+        self._see, self._hear, self._stand = see_beams.compiled(), hear_cones.compiled(), stand.compiled()
+
+    @property
+    def corner_m(self) -> tuple[float, float]:
+        """The lower left corner in the frame of dead reckoning."""
+        return self._corner[0] * CELL_M, self._corner[1] * CELL_M
+
+    def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
+        """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free."""
+        ranges, first, step = scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad
+        if abs(tilt_rad) > LEVEL_RAD:
+            self._last_ranges_m = None
+            self._add_tilted(scan, laser, z_m, tilt_rad)
+            return
+        believed = self._believed(ranges)
+        self._last_ranges_m = ranges
+        self._see(
+            self.seen, self.stamps, self.spots, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed,
+            scan.stamp_s, self._reach_m,
+        )  # fmt: skip
+
+    def _add_tilted(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
+        angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
+        ahead = scan.ranges_m * np.cos(angles)
+        usable = (scan.ranges_m > 0.0) & (scan.ranges_m < self._reach_m) & (z_m - ahead * math.sin(tilt_rad) > GROUND_M)
+        c, s = math.cos(laser[2]), math.sin(laser[2])
+        x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * np.sin(angles))[usable]
+        for px, py in zip((laser[0] + c * x - s * y).tolist(), (laser[1] + s * x + c * y).tolist(), strict=True):
+            put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], scan.stamp_s)
+
+    def _believed(self, ranges: Array) -> Array:
+        """(n,) 1 where the end of a beam is believed; 0 for a lone short one (dazzle, a leaf) that the scan before does not confirm."""
+        believed = np.ones(len(ranges))
+        lone = np.flatnonzero(np.minimum(ranges[:-2], ranges[2:]) - ranges[1:-1] > LONE_STEP_M) + 1
+        before = self._last_ranges_m
+        for i in lone.tolist():
+            is_known = before is not None and len(before) == len(ranges) and np.any(np.abs(before[max(0, i - 4) : i + 5] - ranges[i]) < LONE_STEP_M)
+            believed[i] = float(is_known)
+        return believed
+
+    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> None:
+        """Take a round of the ring.
+
+        Args:
+            axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
+        """
+        heard_m = ranges_m * (ranges_m > sonar.min_range_m + DEAF_M)  # nearer it is deaf: it may be anywhere, and nothing is proved
+        self._rounds = [*self._rounds[1 - ROUNDS :], heard_m]
+        c, s = math.cos(robot[2]), math.sin(robot[2])
+        cones = np.zeros((len(ranges_m), 6))
+        cones[:, APEX_X] = robot[0] + c * axes[:, 0] - s * axes[:, 1]
+        cones[:, APEX_Y] = robot[1] + s * axes[:, 0] + c * axes[:, 1]
+        cones[:, AXIS] = axes[:, 2] + robot[2]
+        cones[:, ECHO] = np.maximum(heard_m, leaves_m)
+        cones[:, LEAVES] = leaves_m
+        if len(self._rounds) == ROUNDS:
+            cones[:, CLEAR_TO] = np.minimum(np.minimum(*self._rounds[:2]), heard_m)
+        most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
+        self._hear(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
+
+    def drop_echoes(self) -> None:
+        """The sonar was away: what it said before does not confirm what it says next."""
+        self._rounds = []
+
+    def stand(self, robot: Planar, grown_m: float, now_s: float, obstacles_since_s: float, window_m: float) -> None:
+        """The robot stands here: its place is free. Gather the points within `window_m` into `points`."""
+        outline = self._outline
+        self.count = self._stand(
+            self.seen, self.stamps, self.spots, *self.corner_m, *robot, outline.planes, outline.reach_m, grown_m, now_s, obstacles_since_s,
+            max(window_m, outline.reach_m + grown_m + CELL_M), self.points,
+        )  # fmt: skip
+
+    def roll(self, robot: Planar) -> None:
+        """Keep the robot in the middle; what leaves the cells is forgotten."""
+        at = (math.floor(robot[0] / CELL_M), math.floor(robot[1] / CELL_M))
+        if self._middle is not None and max(abs(at[0] - self._middle[0]), abs(at[1] - self._middle[1])) <= ROLL_CELLS:
+            return
+        half = len(self.seen) // 2
+        corner = (at[0] - half, at[1] - half)
+        moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
+        self._corner, self._middle = corner, at
+        self.seen = _shifted(self.seen, *moved)
+        self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
+        self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
+
+    @property
+    def is_empty(self) -> bool:
+        """True while nothing stands in the cells."""
+        return not bool((self.stamps > NEVER).any())
+
+
+def _shifted(cells: Array, columns: int, rows: int) -> Array:
+    """The cells as seen from a corner that moved by so many columns and rows; new ones are NEVER."""
+    n = len(cells)
+    out = np.full(cells.shape, NEVER)
+    if abs(columns) < n and abs(rows) < n:
+        to_rows, to_columns = slice(max(0, -rows), min(n, n - rows)), slice(max(0, -columns), min(n, n - columns))
+        from_rows, from_columns = slice(max(0, rows), min(n, n + rows)), slice(max(0, columns), min(n, n + columns))
+        out[to_rows, to_columns] = cells[from_rows, from_columns]
+    return out
