@@ -8,6 +8,7 @@ from typing import Final
 from py_trees.common import Status
 from py_trees.ports import NoDataAvailable
 
+from pluto_bt.behaviours.free_itself import FreeItself
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
@@ -107,6 +108,7 @@ class FollowRay(MotionLeaf):
         self._point: Pair | None = None
         self._heading_rad: float | None = None
         self._turn_sent_s = now_s
+        self._freeing: FreeItself | None = None
         return self.follow(robot)
 
     def resume(self, robot: Robot) -> None:
@@ -123,6 +125,8 @@ class FollowRay(MotionLeaf):
             return trouble
         if not around.look(robot, now_s):
             return self.wait("no pose")
+        if self._freeing is not None:
+            return self._free(robot, around, self._freeing)
         if self._goal is not None and is_near(around, self._goal):
             around.blocked = 0
             return self._decide("none", "the goal is near", near=True)
@@ -140,7 +144,7 @@ class FollowRay(MotionLeaf):
         if advice.kind == ray.TURN:
             return self._turn(robot, around, advice.heading_rad)
         if advice.kind == ray.BLOCKED:
-            return self._blocked(around, advice)
+            return self._blocked(robot, around, advice)
         around.blocked = 0
         return self._decide(advice.side or "none", advice.text)
 
@@ -166,12 +170,22 @@ class FollowRay(MotionLeaf):
             self.post(robot, CommandType.REGULATOR, (0.0, heading_rad))
         return self.wait("turning to the path")
 
-    def _blocked(self, around: Surroundings, advice: ray.Advice) -> Status:
+    def _blocked(self, robot: Robot, around: Surroundings, advice: ray.Advice) -> Status:
+        """Remember the place, and come away from it before anything is decided."""
         around.map.shut(*self._ahead(around, 0.9), SHUT_M, self.now_s())
         around.blocked += 1
         if around.blocked >= MOST_BLOCKED:
             return self.fail("stuck", advice.text)
-        return self._decide("both", advice.text)
+        self._freeing = FreeItself(around, self.now_s())
+        return self._free(robot, around, self._freeing)
+
+    def _free(self, robot: Robot, around: Surroundings, freeing: FreeItself) -> Status:
+        speed_mps = freeing.speed_mps(around, self.now_s())
+        if speed_mps == 0.0:
+            return self._decide("both", "the path was blocked")
+        if self._ticket is None or self._ticket.command.velocity != (speed_mps, 0.0):
+            self.post(robot, CommandType.VELOCITY, velocity=(speed_mps, 0.0))
+        return self.wait("coming away from where it was blocked")
 
     def _ahead(self, around: Surroundings, distance_m: float) -> Pair:
         x, y, theta = around.robot

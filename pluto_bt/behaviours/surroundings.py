@@ -20,6 +20,7 @@ from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.ways import Way, Ways
 
+REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
 
@@ -34,6 +35,7 @@ class Surroundings:
         self.rectangle: Rectangle | None = None  # in Localization/Pose
         self._laser = platform.devices.laser
         self._is_empty = True
+        self._refreshed_s = -math.inf
         self.begin(None)
 
     def begin(self, rectangle: Rectangle | None, goes_on: bool = False) -> None:
@@ -66,7 +68,9 @@ class Surroundings:
         for view in self.views:
             if view.laser is not None and self._laser is not None:
                 self.map.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
-        self.map.refresh(now_s)
+        if now_s - self._refreshed_s >= REFRESH_S:
+            self._refreshed_s = now_s
+            self.map.refresh(now_s)
         return True
 
     @property
