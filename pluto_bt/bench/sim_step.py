@@ -85,7 +85,7 @@ class Round:
         simulator = self.simulator
         simulator.step(self._step * STEP_S)
         self._step += 1
-        simulator.devices["base"].drive(0.5, 0.35)  # type: ignore[attr-defined]
+        simulator.devices["base"].drive(0.5, 0.35)  # type: ignore[attr-defined]  # the base is the one device that drives
         for device in simulator.devices.values():
             device.read()
 
