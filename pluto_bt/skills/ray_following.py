@@ -14,8 +14,8 @@ import numpy as np
 
 from pluto_bt.skills.heading import wrap
 from pluto_bt.skills.local_map import LocalMap
-from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.rays import Openings, clearances_between
+from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.rays import Openings
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.ways import Way
 
@@ -98,19 +98,16 @@ class RayFollowing:
         """Nothing stands on the next stretch."""
         count = int(2.0 * self._ahead_m / self._map.cell_m)
         stretch = self._way.points[4:count]
-        return not len(stretch) or bool((self._clearances(stretch) > 0.8 * self._least_m).all())
-
-    def _clearances(self, points: Array) -> Array:
-        return self._map.clearances_m(points)
+        return not len(stretch) or bool((self._map.clearances_m(stretch) > 0.8 * self._least_m).all())
 
     def _point_ahead(self, robot: Planar, most_m: float) -> tuple[float, float]:
         """The farthest point of the way within `most_m` that can be driven to straight without leaving the room that the way has."""
         points = self._way.points
         last = min(len(points) - 1, math.ceil(most_m / self._map.cell_m))
-        room_m = min(float(self._clearances(points[: last + 1]).min()), self._map.parameters.path_half_width_m)
+        room_m = min(float(self._map.clearances_m(points[: last + 1]).min()), self._map.parameters.path_half_width_m)
         for k in (last, (3 * last) // 4, last // 2, last // 4):
             point = (float(points[k, 0]), float(points[k, 1]))
-            if float(clearances_between(self._map, robot[:2], point).min()) >= 0.8 * room_m:
+            if float(self._map.clearances_between_m(robot[:2], point).min()) >= 0.8 * room_m:
                 break
         return point
 
