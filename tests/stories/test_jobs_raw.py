@@ -8,83 +8,18 @@ from typing import Any
 
 import pytest
 
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LocalMapState
-from pluto_bt.commands.inputs import Request, read_inputs
-from pluto_bt.runner import Runner, make_runner
-from pluto_bt.runtime.clock import NS
+from pluto_bt.blackboard.messages import LocalMapState
+from tests.raw_robot import RawRobot
 
-WAIT = '<root BTCPP_format="4"><BehaviorTree ID="wait"><Sleep msec="100000000"/></BehaviorTree></root>'
 STREET = """<world name="lane" seed="1">
   <wall id="lane">0,0 30,0 30,8 0,8 0,0</wall> {more}
   <robot platform="atrv2" x="3" y="4" theta_deg="0"/>
 </world>"""
 
 
-class Robot:
-    """A running robot that a test commands by hand; `codes` are the different (element[2], element[3]) that motion has shown."""
-
-    def __init__(self, folder: Path, world: str, seed: int = 1) -> None:
-        (folder / "wait.xml").write_text(WAIT, encoding="utf-8")
-        (folder / "world.xml").write_text(world, encoding="utf-8")
-        inputs = read_inputs(Request(str(folder / "wait.xml"), world=str(folder / "world.xml"), seed=str(seed)))
-        self.runner: Runner = make_runner(inputs)
-        self.system = self.runner.system
-        self.codes: list[tuple[int, int]] = []
-        self.links: list[tuple[int, int]] = []
-        self.deepest = math.inf  # how far inside the rectangle the robot really was at the worst
-        self.system.board.on_change("motion/status", self._note)
-        self.system.executive.core.start(self.runner.mission)
-        self.system.start_parts()
-        self.system.scheduler.start()
-        self.system.scheduler.run_until(NS // 2)
-
-    @property
-    def now_s(self) -> float:
-        return self.system.clock.now_s()
-
-    @property
-    def status(self) -> FVectorState:
-        sample = self.system.board.newest("motion/status")
-        assert sample is not None and isinstance(sample.value, FVectorState)
-        return sample.value
-
-    @property
-    def pose(self) -> tuple[float, float, float]:
-        return self.system.simulator.pose
-
-    def order(self, flags: int, position: Any = (0.0, 0.0), velocity: Any = (0.0, 0.0), force: Any = (0.0,)) -> None:
-        """Post and forget the codes shown so far."""
-        self.codes.clear()
-        self.links.clear()
-        assert self.system.inboxes["motion"].post("operator", ActuatorState(self.now_s, flags, position, velocity, (0.0, 0.0), force)) == ""
-
-    def run(self, seconds: float, until: Any = lambda: False) -> bool:
-        """Let time pass; True as soon as `until` holds."""
-        end_ns = self.system.clock.now_ns() + round(seconds * NS)
-        while self.system.clock.now_ns() < end_ns:
-            self.system.scheduler.run_until(self.system.clock.now_ns() + NS // 10)
-            rectangle = self.system._parts["motion"].component._skill.rectangle
-            if rectangle is not None:
-                self.deepest = min(self.deepest, rectangle.depth_m(*self.pose[:2]))
-            if until():
-                return True
-        return False
-
-    def is_at_rest(self) -> bool:
-        return self.status.element[3] in (0, -1)
-
-    def _note(self) -> None:
-        code = (self.status.element[2], self.status.element[3])
-        if not self.codes or self.codes[-1] != code:
-            self.codes.append(code)
-        link = (self.status.element[0], self.status.element[1])
-        if not self.links or self.links[-1] != link:
-            self.links.append(link)
-
-
 @pytest.fixture
 def robot(tmp_path: Path) -> Any:
-    return lambda more="", seed=1: Robot(tmp_path, STREET.format(more=more), seed)
+    return lambda more="", seed=1: RawRobot(tmp_path, STREET.format(more=more), seed)
 
 
 def test_moveto_shows_scanning_following_near_and_at_goal(robot: Any) -> None:
