@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from pluto_bt.blackboard.codes import GotoStatus, LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LaserScan, Pose
 from pluto_bt.blackboard.poses import pose_at
@@ -64,8 +66,10 @@ class Avoid:
             self._skill.accept(letter.command, now_s)
         status: FVectorState | None = self._drive_status()
         has_it = letter is None and self._drive_has_it()  # a goto posts anew in each cycle, so ask before: drive tells of the last cycle's
-        command = self._skill.step(now_s, self._senses(now_s, status))
+        command = self._skill.step(now_s, self._senses(now_s, STILL if status is None else status.data))
         if command is not None:
+            if letter is None and self._sent is not None and status is not None and status.element[0] in BUMPERS:
+                command = msgspec.structs.replace(command, stamp_s=self._sent.stamp_s)  # no new order: that would open the bumper's latch
             self._drive.post("avoid", command)
             self._sent = command
         has_it = has_it or self._drive_has_it()
@@ -86,14 +90,12 @@ class Avoid:
     def _halt(self, now_s: float) -> None:
         self._drive.stop("avoid", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
 
-    def _senses(self, now_s: float, drive: FVectorState | None) -> AvoidSenses:
+    def _senses(self, now_s: float, data: tuple[float, ...]) -> AvoidSenses:
         oldest_s = now_s - self._parameters.pose_stale_s
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
-        twist = STILL if drive is None else (drive.data[0], drive.data[1])
-        is_bumped = drive is not None and drive.element[0] in BUMPERS
-        return AvoidSenses(pose, dead, raw_rad, twist, self._newest_view(), self._sonar(), is_bumped)
+        return AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

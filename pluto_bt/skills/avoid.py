@@ -3,8 +3,7 @@
 Orders and their amendments. What comes from above is an order; its time of acceptance is the stamp of every command that goes down for
 it. A pass-through (T = 0, 1) is posted once; when laser protection slows it, or the heading of T = 1 has to follow the adjusted pose,
 the amended command is posted under the stamp of the order, and drive counts its 4 s from the first of one stamp. So the timeout of the
-order still fires. Goto gives a new order in each cycle, with the stamp of the cycle; but while a bumper holds the drive it only amends the
-last one, for the bumper's latch opens with the next order from above, not with one of goto's own.
+order still fires. Goto gives a new order in each cycle, with the stamp of the cycle.
 """
 
 from __future__ import annotations
@@ -39,8 +38,7 @@ LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean th
 class AvoidSenses(NamedTuple):
     """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
 
-    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force, `is_bumped`
-    whether a bumper holds the drive.
+    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force.
     """
 
     pose: Planar | None
@@ -49,7 +47,6 @@ class AvoidSenses(NamedTuple):
     twist: Twist = STILL
     view: ScanView | None = None
     sonar: SonarState | None = None
-    is_bumped: bool = False
 
 
 class Avoid:
@@ -154,22 +151,21 @@ class Avoid:
         """T = 2: steer and adapt the speed; zero velocity when it is there, stuck, or cannot know."""
         flags = 11 if avoidance & Avoidance.SONAR else 1
         raw_rad = senses.raw_heading_rad
-        stamp_s = self._posted.stamp_s if senses.is_bumped and self._posted is not None else now_s
         if self.goto_status is not GotoStatus.RUNNING:
             last = self._posted
-            return self._post(0, 0.0, STILL, stamp_s) if last is None or last.velocity != STILL or stamp_s - last.stamp_s >= REFRESH_S else None
+            return self._post(0, 0.0, STILL, now_s) if last is None or last.velocity != STILL or now_s - last.stamp_s >= REFRESH_S else None
         fault = self._goto_fault(now_s, senses, avoidance)
         if fault != ALL_WELL or senses.pose is None or senses.dead is None or raw_rad is None:
             self.verdict = kept(self.verdict, fault)
             self._goto.pause(now_s, dt_s)
-            return self._post(0, 0.0, STILL, stamp_s)
+            return self._post(0, 0.0, STILL, now_s)
         points = self.sight.points(senses.dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR), now_s)
         way = self._goto.step(now_s, senses.pose, senses.dead, points)
         self.goto_status = way.status
         if way.status is not GotoStatus.RUNNING:
             reason = reasons.STUCK if way.status is GotoStatus.STUCK else ""
             self.verdict = Verdict(reason=reason, text=way.text)
-            return self._post(0, 0.0, STILL, stamp_s)
+            return self._post(0, 0.0, STILL, now_s)
         limits = self._goto.limits
         twist = within(regulate(way.turn_rad, way.speed_mps, limits), limits)
         share, verdict = self._clear_share(points, twist, senses.twist)
@@ -178,8 +174,8 @@ class Avoid:
             self._goto.give_up_backing()
         heading_rad = raw_rad + way.turn_rad
         if share >= 1.0:
-            return self._post(flags, heading_rad, (way.speed_mps, limits.turn_rate_radps), stamp_s)
-        return self._post(flags, *self._slow_turn(way.speed_mps, heading_rad, raw_rad, twist, share), stamp_s)
+            return self._post(flags, heading_rad, (way.speed_mps, limits.turn_rate_radps), now_s)
+        return self._post(flags, *self._slow_turn(way.speed_mps, heading_rad, raw_rad, twist, share), now_s)
 
     def _slow_turn(self, speed_mps: float, heading_rad: float, raw_rad: float, twist: Twist, share: float) -> tuple[float, Twist]:
         """Heading and velocities of a regulator command that drive turns into `share` of `twist`."""
