@@ -6,7 +6,7 @@ Each posts one command; motion runs the library tree of the job, the same as for
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -133,6 +133,7 @@ class Resume(JobLeaf):
 class SetRectangle(MotionLeaf):
     """Sets the rectangle that limits MoveTo, Explore and Investigate: `b` to either side of `home`, `h` deep; b = 0 removes it."""
 
+    DRIVES: ClassVar = False
     INPUT_PORTS = {
         "rectangle": Port(tuple[float, float], True, '"b;h": half the width of the base, and the depth', unit="m", ge=0.0),
         "home": Port(tuple[float, float, float], False, '"x;y;theta_deg": middle of the base, looking into it', (0.0, 0.0, 0.0)),

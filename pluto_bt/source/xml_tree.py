@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from pluto_bt.source.faults import Place
 from pluto_bt.source.text import SourceText
+from pluto_bt.source.xml_entities import ENTITY, character
 
 
 @dataclass(slots=True)
@@ -31,9 +32,17 @@ class XmlAttribute:
         return self.source.place(self.value_start)
 
     def place_at(self, index: int) -> Place:
-        """The place of `value[index]`; the first character of the value if entities were decoded in it."""
-        exact = self.source.text.startswith(self.value, self.value_start)
-        return self.source.place(self.value_start + (index if exact else 0))
+        """The place of `value[index]`: entities before it are longer in the source than in the value."""
+        text, at = self.source.text, self.value_start
+        if text.startswith(self.value, at):
+            return self.source.place(at + index)
+        left = index
+        for entity in ENTITY.finditer(text, at):
+            plain, decoded = entity.start() - at, len(character(entity))
+            if left < plain + decoded:
+                return self.source.place(at + min(left, plain))
+            left, at = left - plain - decoded, entity.end()
+        return self.source.place(at + left)
 
 
 @dataclass(slots=True)

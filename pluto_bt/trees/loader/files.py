@@ -9,6 +9,7 @@ from pathlib import Path
 from pluto_bt.source import Faults, Place, did_you_mean
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, name_problem
+from pluto_bt.trees.ports import Direction
 
 MAX_INCLUDES = 50  # levels
 ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include")
@@ -32,7 +33,7 @@ class ModelPort:
     """One port of a model in TreeNodesModel."""
 
     name: str
-    direction: str
+    direction: Direction
     type_name: str
     default: str | None
     description: str
@@ -196,7 +197,7 @@ class MissionFiles:
 
     def _model(self, element: XmlElement) -> Model:
         model = Model(element.tag, element.get("ID"), element)
-        tags = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
+        tags: dict[str, Direction] = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
         for port in element.children:
             if port.tag in tags and "name" in port.attributes:
                 name, default = port.get("name"), port.attributes.get("default")

@@ -40,6 +40,11 @@ class NodeType:
     builtin: bool = False
     description: str = ""
 
+    @property
+    def is_ours(self) -> bool:
+        """True for what pluto_bt itself brings; a user's leaf may do what its ports do not tell."""
+        return self.builtin or getattr(self.make, "__module__", "").startswith("pluto_bt.")
+
 
 def name_problem(name: str) -> str:
     """Why `name` cannot be the ID of a tree or a node type, or ""."""
