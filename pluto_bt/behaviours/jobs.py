@@ -82,6 +82,7 @@ class JobLeaf(MotionLeaf):
 class MoveTo(JobLeaf):
     """Drives to `goal` by ray following: along open paths in the middle of the street. Fails with `no-path` where there is none."""
 
+    WAY: ClassVar = "found"
     INPUT_PORTS = {"goal": Port(tuple[float, float], True, "where to", unit="m"), **MOTION_INPUTS}
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 

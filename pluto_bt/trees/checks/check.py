@@ -45,14 +45,16 @@ def examine_mission(
     file: str | None = None,
     plugins: Sequence[str] = (),
     models: Sequence[str | Path] = (),
+    whole: bool = True,
 ) -> Examined:
     """All faults of a mission: also those that BehaviorTree.CPP finds only while ticking, and as warnings those it silently accepts.
 
-    Makes no node. `models` are files whose TreeNodesModel describes foreign nodes; the other arguments are those of `load_mission`.
+    Makes no node. `models` are files whose TreeNodesModel describes foreign nodes; without `whole` it is not asked whether the nodes work
+    together (entries, reach, driving), only whether each is right. The other arguments are those of `load_mission`.
     """
     with no_collecting():
         reading = read_mission(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
-        if reading.plan is not None and reading.main is not None and not reading.report.faults.is_full:
+        if whole and reading.plan is not None and reading.main is not None and not reading.report.faults.is_full:
             _check_whole(reading, reading.plan)
         return Examined(reading.report.faults.in_order(), reading.plan)
 

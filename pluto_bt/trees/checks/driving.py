@@ -34,8 +34,9 @@ def _check_branches(driving: list[tuple[Plan, Plan]], report: Report) -> None:
         place, other = driver.element.place, first.element.place
         what = f"<{driver.type_name}> {'drives' if is_certain else 'may drive'} the base while <{first.type_name}> of another parallel branch does"
         tell = report.late if is_certain else report.warning
-        tell(place, "parallel-drive", what, expected="one branch that drives", found=f"the other at {other.file or '<text>'}:{other.line}:{other.column}",
-             mend="the second takes the command away from the first, which fails with `cancelled`: put them in a <Sequence>")  # fmt: skip
+        found = f"the other at {other.file or '<text>'}:{other.line}:{other.column}"
+        mend = "the second takes the command away from the first, which fails with `cancelled`: put them in a <Sequence>"
+        tell(place, "parallel-drive", what, expected="one branch that drives", found=found, mend=mend)
 
 
 def _drives_at_once(plan: Plan) -> bool:
