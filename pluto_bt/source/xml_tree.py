@@ -47,12 +47,13 @@ class XmlAttribute:
 
 @dataclass(slots=True)
 class XmlComment:
-    """A comment; `child_index` children of its parent stand before it."""
+    """A comment; `child_index` children of its parent stand before it. `is_instruction`: a processing instruction, kept like a comment."""
 
     text: str
     child_index: int
     source: SourceText = field(repr=False, compare=False)
     start: int = field(repr=False, compare=False)
+    is_instruction: bool = False
 
     @property
     def place(self) -> Place:
@@ -100,3 +101,30 @@ class XmlElement:
             return self.place
         at, offset = self.text_runs[run]
         return self.source.place(offset + index - at)
+
+
+@dataclass(slots=True)
+class XmlDocument:
+    """A whole file: its root and the comments around it, each in its place. `is_declared`: it begins with an XML declaration."""
+
+    root: XmlElement
+    outside: Sequence[XmlComment] = ()
+    is_declared: bool = False
+
+
+class OpenElement:
+    """An element whose end tag is not read yet, with the text and the comments found in it so far."""
+
+    __slots__ = ("comments", "element", "length", "pieces", "runs")
+
+    def __init__(self, element: XmlElement) -> None:
+        self.element = element
+        self.pieces: list[str] = []
+        self.runs: list[tuple[int, int]] = []
+        self.comments: list[XmlComment] = []
+        self.length = 0
+
+    def close(self) -> None:
+        """The element is complete."""
+        self.element.text = "".join(self.pieces)
+        self.element.text_runs, self.element.comments = self.runs, self.comments
