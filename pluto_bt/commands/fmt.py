@@ -68,4 +68,5 @@ def _replace(path: Path, text: str, faults: Faults) -> None:
         os.chmod(file.name, stat.S_IMODE(target.stat().st_mode))
         os.replace(file.name, target)
     except OSError as error:
-        faults.error(Place(str(path)), "not-writable", f"cannot write {path}", expected="a file that may be written", found=str(error.strerror or error))
+        found = str(error.strerror or error)
+        faults.error(Place(str(path)), "not-writable", f"cannot write {path}", expected="a file that may be written", found=found)
