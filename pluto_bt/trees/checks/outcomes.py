@@ -51,14 +51,11 @@ def constant_truth(script: str) -> bool | None:
 
 
 def deciding_condition(plan: Plan) -> str:
-    """The pre-condition that always decides, so that the node itself is never ticked; "" if there is none."""
+    """The pre-condition that decides if none before it does, so that the node itself is never ticked; "" if there is none."""
     for name, deciding, _ in PRE_CONDITIONS:
         attribute = plan.element.attributes.get(name)
-        says = constant_truth(attribute.value) if attribute is not None else None
-        if says is deciding:
+        if attribute is not None and constant_truth(attribute.value) is deciding:
             return name
-        if attribute is not None and says is None:
-            return ""
     return ""
 
 
