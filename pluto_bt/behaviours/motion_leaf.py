@@ -7,7 +7,7 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -30,7 +30,15 @@ MOTION_OUTPUTS: Final = {"reason": Port(str, False, "why it failed: a word of th
 
 
 class MotionLeaf(Leaf):
-    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`."""
+    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`.
+
+    Attributes:
+        DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
+        WAY: how the leaf comes to its port `goal`: "straight", or "found" if it looks for a way; "stays" if it stays where it is; "" else.
+    """
+
+    DRIVES: ClassVar = True
+    WAY: ClassVar = ""
 
     def initialise(self) -> None:
         """Forget the last run; the command itself goes out in the first `update`."""
