@@ -16,7 +16,7 @@ from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING, sentence
 from pluto_bt.behaviours.robot import Robot, Ticket
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
-from pluto_bt.blackboard.messages import FVectorState, Pair
+from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
@@ -138,7 +138,11 @@ class MotionLeaf(Leaf):
             return None
         if status.reason == "bad-command":
             return self.fail("bad-command", status.text)
-        return self._patience(_waiting_word(status), status.text)
+        word = _waiting_word(status)
+        trouble = self._patience(word, status.text)
+        if trouble is None and word == "bumper" and _is_released(robot):
+            self.resume(robot)  # the drive's latch opens with a new command
+        return trouble
 
     def _replaced(self, robot: Robot) -> Status:
         now = robot.newest("motion/status")
@@ -153,6 +157,12 @@ class MotionLeaf(Leaf):
         if word and self._last_s - self._word_since_s >= WAITING[word]:
             return self.fail(word, text or sentence(word))
         return None
+
+
+def _is_released(robot: Robot) -> bool:
+    """True if the bumpers are known to be open."""
+    bumper = robot.newest("ATRV2/Bumper")
+    return isinstance(bumper, BumperState) and not (bumper.front or bumper.back or robot.is_stale("ATRV2/Bumper"))
 
 
 def _waiting_word(status: FVectorState) -> str:

@@ -66,6 +66,7 @@ class Surroundings:
         if self._is_empty:
             self.map.forget(self.robot)
             self._is_empty = False
+        self.map.visit(*self.robot[:2])
         self.views = tuple(robot.scan_views())
         for view in self.views:
             if view.laser is not None and self._laser is not None:
