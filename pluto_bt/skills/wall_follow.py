@@ -14,14 +14,13 @@ from typing import NamedTuple
 import numpy as np
 
 from pluto_bt.blackboard.messages import ActuatorState
-from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.heading import GAIN_PER_S, SLOW_ANGLE_RAD
 from pluto_bt.skills.limits import Limits, clamp
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.steering import CLEAR_M
 from pluto_bt.skills.wall_parameters import WallParameters
-from pluto_bt.skills.wall_path import Ball, WallPath, Wish, find_wall, plan
+from pluto_bt.skills.wall_path import Ball, WallPath, Wish, find_wall, foot_of, plan
 
 DISTANCE, SIDE = 1, 2  # our own in `force` of T = 3, where it has so many numbers: metres (0 = the parameter), and below 0 = wall on the right
 NEAR_M = 0.5  # so near to its path the robot is at the wall
@@ -29,7 +28,7 @@ PURSUIT_S, SHORTEST_M, LONGEST_M = 1.0, 0.4, 0.9  # how far ahead on the path it
 TURN_SHARE = 0.7  # of the turn rate is planned with; the rest is for what goes wrong
 COMFORT_SHARE = 0.4  # of the deceleration, before bends
 CREEP_MPS = 0.08
-PROGRESS_M = 0.3
+PROGRESS_M = 0.5
 AT_WALL, TO_WALL = "at the wall", "on the way to the wall"
 MOST_TURN_RAD, AHEAD_RAD = math.radians(60.0), math.radians(30.0)
 
@@ -128,7 +127,7 @@ class WallFollow:
 
     def _drive(self, path: Array) -> Along:
         """Steer to a point ahead on the path, so slow that the bends up to there can be driven."""
-        foot = int(np.argmin(np.hypot(path[: len(path) // 2 + 1, 0], path[: len(path) // 2 + 1, 1])))
+        foot = foot_of(path)
         off_m = math.hypot(*path[foot, :2])
         self._is_there = self._is_there or off_m < NEAR_M
         way_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path[foot:, :2], axis=0).T))))
@@ -159,7 +158,7 @@ class WallFollow:
     def _judged(self, along: Along, now_s: float, odometry: Planar) -> Along:
         """Stuck without progress."""
         last = self._progress
-        if last is None or math.dist(last[1][:2], odometry[:2]) > PROGRESS_M or abs(wrap_angle(last[1][2] - odometry[2])) > 1.0:
+        if last is None or math.dist(last[1][:2], odometry[:2]) > PROGRESS_M:
             self._progress = (now_s, odometry)
         elif now_s - last[0] > self.parameters.stuck_after_s:
             self._end = Along(0.0, 0.0, WallStatus.STUCK, f"came no farther along the wall for {self.parameters.stuck_after_s:g} s")

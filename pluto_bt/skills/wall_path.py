@@ -21,11 +21,12 @@ from pluto_bt.skills.rolling import roll
 STEP_M = 0.06
 BEHIND_M = 0.9  # the first ball begins so far behind the robot …
 AHEAD_M = 3.0  # … and rolls on so far before it
-STEPS = 65
+STEPS = 120
+ENOUGH_M = 1.5  # a path that ends earlier is none …
 ASIDE_M = 0.3  # a second ball that is pushed farther aside where it begins does not fit between the sides
 GROWTH = 1.15  # of a ball that has found more room, from step to step
+LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
-AROUND_RAD = math.radians(115.0)
 HALVINGS = 5
 LEFT_RAD = (math.radians(-45.0), math.pi)  # where a wall on the left is looked for first
 
@@ -94,7 +95,7 @@ def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
     for halving in range(HALVINGS + 1):
         share = 1.0 if halving == 0 else 0.5 * (low + high)
         path = _inside(chain, rows[0], end, ball.radius_m, share, wish)
-        if path is not None and _is_clear(path, points, wish.least_m):
+        if path is not None and len(path) - foot_of(path) > ENOUGH_M / STEP_M and _is_clear(path, points, wish.least_m):
             low, best = share, path
             if halving == 0:
                 break
@@ -103,31 +104,19 @@ def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
     path = best if best is not None else _inside(chain, rows[0], end, ball.radius_m, 0.0, wish)
     if path is None:
         return None
-    foot = _foot(path)
+    foot = foot_of(path)
     distance_m = min(wish.distance_m, ball.radius_m + low * (_full_m(ball.radius_m, wish) - ball.radius_m))
     return WallPath(path[:, :3], foot, distance_m, _next_ball(rows, path[foot, 3:], ball.radius_m))
 
 
 def _rolled(points: Array, ball: Ball, wish: Wish) -> tuple[Ball, Array] | None:
-    """The first ball, as large as it may be and has room for, and how it rolls. Where it has to turn around between two opposite sides, but
-    a smaller one that is still as wide as the robot goes on, that one is taken: a narrow place straight ahead is no gap to pass by."""
-    found = None
+    """The first ball, as large as it may be and has room for, and how it rolls; None if even one as wide as the robot does not fit."""
     radius_m = min(0.5 * wish.opening_m, GROWTH * ball.radius_m)
     while radius_m >= wish.least_m:
         if _seated(points, ball, SLACK * radius_m) is not None and (seated := _seated(points, ball, radius_m)) is not None:
-            rows = roll(points, seated.x_m, seated.y_m, radius_m, STEP_M, STEPS)
-            if not _turns_around(rows):
-                return seated, rows
-            found = found or (seated, rows)
+            return seated, roll(points, seated.x_m, seated.y_m, radius_m, STEP_M, STEPS)
         radius_m /= GROWTH
-    return found
-
-
-def _turns_around(rows: Array) -> bool:
-    """True if the ball meets something on its right from which it rolls back against the robot's heading."""
-    headings = np.arctan2(rows[:, 1] - rows[:, 3], rows[:, 0] - rows[:, 2]) + 0.5 * math.pi
-    turns = np.remainder(np.diff(headings) + math.pi, math.tau) - math.pi
-    return bool(np.any((np.abs(turns) > AROUND_RAD) & (np.cos(headings[1:]) < math.cos(AROUND_RAD)) & (np.cos(headings[:-1]) > 0.0)))
+    return None
 
 
 def _seated(points: Array, ball: Ball, radius_m: float) -> Ball | None:
@@ -182,15 +171,14 @@ def _offset(rows: Array, normals_rad: Array, inner_m: float) -> Array:
     return path
 
 
-def _foot(path: Array) -> int:
-    """The point of the path that is nearest to the robot, among those that are not far along it."""
-    near = path[: max(1, int(3.0 * BEHIND_M / STEP_M))]
-    return int(np.argmin(np.hypot(near[:, 0], near[:, 1])))
+def foot_of(path: Array) -> int:
+    """The point of a path that is nearest to the robot; of two that are equally near, the one that comes first."""
+    return int(np.argmin(np.hypot(path[:, 0], path[:, 1]) + LATER_M_PER_M * STEP_M * np.arange(len(path))))
 
 
 def _is_clear(path: Array, points: Array, least_m: float) -> bool:
     """True if nothing stands nearer to the next metres of the path than the robot needs."""
-    foot = _foot(path)
+    foot = foot_of(path)
     ahead = path[foot : foot + int(AHEAD_M / STEP_M) : 3]
     gaps = np.hypot(ahead[:, :1] - points[:, 0], ahead[:, 1:2] - points[:, 1])
     return bool(gaps.min() >= least_m)
