@@ -14,7 +14,6 @@ from pluto_bt.maps.geometry import Pose
 
 Array = NDArray[np.float64]
 Rng = np.random.Generator
-CORNER_M = 1.2  # nearer to an edge than this a wall is not straight any more
 POST_CORNERS = 16
 DOOR_M = (0.8, 1.5)
 
@@ -110,7 +109,7 @@ def _text(points: Array) -> str:
 
 
 class Kept(NamedTuple):
-    """How a camera kept its distance: the farthest off beside straight walls, and anywhere else; and the share of the points beside straight walls."""
+    """How a camera kept its distance: the farthest off beside straight walls, the farthest anywhere else; and the share of straight walls."""
 
     straight_m: float
     corner_m: float
@@ -124,8 +123,8 @@ def camera_path(poses: Sequence[Pose], back_m: float, side_m: float) -> Array:
     return np.column_stack((x - c * back_m - s * side_m, y - s * back_m + c * side_m))
 
 
-def kept_distance(cameras: Array, edges: Array, distance_m: float) -> Kept:
-    """Compare the distances of points (n, 2) from the nearest edge with the one to keep."""
+def kept_distance(cameras: Array, edges: Array, distance_m: float, corner_m: float) -> Kept:
+    """Compare the distances of points (n, 2) from the nearest edge with the one to keep. Nearer than `corner_m` to its ends an edge is a corner."""
     starts, steps = edges[:, None, :2], edges[:, None, 2:] - edges[:, None, :2]
     share = np.clip(((cameras - starts) * steps).sum(-1) / np.maximum((steps**2).sum(-1), 1e-12), 0.0, 1.0)
     feet = starts + share[..., None] * steps
@@ -134,5 +133,5 @@ def kept_distance(cameras: Array, edges: Array, distance_m: float) -> Kept:
     foot, off = feet[nearest], np.abs(away[nearest] - distance_m)
     corners = edges[:, :2].tolist() + edges[:, 2:].tolist()
     to_corner = np.min([np.hypot(foot[:, 0] - x, foot[:, 1] - y) for x, y in corners], axis=0)
-    is_straight = to_corner > CORNER_M
+    is_straight = to_corner > corner_m
     return Kept(float(off[is_straight].max(initial=0.0)), float(off[~is_straight].max(initial=0.0)), float(is_straight.mean()))

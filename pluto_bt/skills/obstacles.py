@@ -91,8 +91,8 @@ class Obstacles:
 
     def _is_lone(self, ranges: Array) -> Mask:
         """Single short beams that the scan before does not confirm: dazzle, rain, a leaf."""
-        lone = np.zeros(len(ranges), dtype=bool)
-        lone[1:-1] = np.minimum(ranges[:-2], ranges[2:]) - ranges[1:-1] > LONE_STEP_M
+        beyond = np.concatenate(([np.inf], ranges, [np.inf]))  # the beams at the edges have one neighbour
+        lone = np.minimum(beyond[:-2], beyond[2:]) - ranges > LONE_STEP_M
         if lone.any() and self._last_ranges_m is not None and len(self._last_ranges_m) == len(ranges):
             before = self._last_ranges_m
             for i in np.flatnonzero(lone).tolist():

@@ -93,11 +93,10 @@ class WallFollow:
         """
         if self._end is not None:
             return self._end
-        stands = points[(points[:, 3] == 0.0) & (points[:, 4] == 0.0), :2] * (1.0, self._side)
         mirrored = (odometry[0], self._side * odometry[1], self._side * odometry[2])
         if self._path is None or scan_s != self._scan_s:
             self._scan_s = scan_s
-            self._look(np.ascontiguousarray(stands), mirrored)
+            self._look(self._standing(points), mirrored)
             if self._is_lost:
                 self._end = Along(0.0, 0.0, WallStatus.LOST, "the wall that was followed is not there any more")
                 return self._end
@@ -108,6 +107,13 @@ class WallFollow:
         return self._judged(along, now_s, odometry)
 
     # ---------------------------------------------------------------- looking
+
+    def _standing(self, points: Array) -> Array:
+        """(n, 2) mirrored, of what does not move; without what would stand within the robot: a ghost of a beam that was dazzled."""
+        stands = points[(points[:, 3] == 0.0) & (points[:, 4] == 0.0), :2]
+        planes = self._outline.planes
+        is_outside = (stands @ planes[:, :2].T > planes[:, 2]).any(axis=1)
+        return np.ascontiguousarray(stands[is_outside] * (1.0, self._side))
 
     def _look(self, stands: Array, robot: Planar) -> None:
         """Work out the path anew."""

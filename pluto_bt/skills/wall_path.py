@@ -28,7 +28,7 @@ GROWTH = 1.15  # of a ball that has found more room, from step to step
 LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
 HALVINGS = 5
-LEFT_RAD = (math.radians(-45.0), math.pi)  # where a wall on the left is looked for first
+LEFT_RAD = (math.radians(-10.0), math.pi)  # where a wall on the left is looked for first
 
 
 class Ball(NamedTuple):
