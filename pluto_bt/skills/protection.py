@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus
 from pluto_bt.skills import reasons
 from pluto_bt.skills.limits import STILL, Limits, Twist
@@ -56,11 +58,21 @@ class Protection:
             if allowed < share:
                 share, verdict = allowed, self._seen(points, which)
         if share > 0.0 and wanted != STILL and points[:, 3:].any():
+            which = self._who_is_inside(points)
+            if which >= 0:
+                return 0.0, self._seen(points, which)
             within_s = AWAIT_S + horizon_s(now, self._limits, self._latency_s)
             _, which = first_contact(points, self._outline.planes, 0.0, 0.0, within_s)
             if which >= 0:
                 return 0.0, self._seen(points, which)
         return share, verdict
+
+    def _who_is_inside(self, points: Array) -> int:
+        """A point of somebody who walked into the standing robot, -1 if there is none: he is let out before it moves on."""
+        walking = np.flatnonzero(points[:, 3:].any(axis=1))
+        planes = self._outline.planes
+        inside = (points[walking, :2] @ planes[:, :2].T < planes[:, 2]).all(axis=1)
+        return int(walking[inside][0]) if inside.any() else -1
 
     def _seen(self, points: Array, which: int) -> Verdict:
         x_m, y_m = points[which, :2].tolist()

@@ -12,6 +12,7 @@ from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills.avoid_parameters import AvoidParameters
@@ -29,6 +30,8 @@ TURN_SHARE = 0.7  # of the turn rate is planned with; the rest is for what goes 
 COMFORT_SHARE = 0.4  # of the deceleration, before bends
 CREEP_MPS = 0.08
 PROGRESS_M = 0.5
+ALONE_M, ALONE_WITHIN_M = 0.08, 2.5  # a point without another in the squares around it; farther away beams lie wide apart
+LOST_S = 3.0  # a wall that is not seen for so long is lost
 AT_WALL, TO_WALL = "at the wall", "on the way to the wall"
 MOST_TURN_RAD, AHEAD_RAD = math.radians(60.0), math.radians(30.0)
 
@@ -70,16 +73,16 @@ class WallFollow:
         middle_m = max(self.distance_m + p.camera_side_m, self._least_m)
         self.wish = Wish(middle_m, p.fillet_m, max(p.opening_m, middle_m + self._least_m), self._least_m)
         self.reach_m = max(p.look_m, middle_m + self.wish.fillet_m + p.lost_m)
-        self._ball: Ball | None = None
         self._at: Planar = (0.0, 0.0, 0.0)
         self._path: WallPath | None = None
-        self._scan_s = -math.inf
-        self._is_there = self._is_lost = False
+        self._scan_s = self._seen_s = -math.inf
+        self._is_there = False
         self._end: Along | None = None
         self._progress: tuple[float, Planar] | None = None
 
     def pause(self, dt_s: float) -> None:
         """Time in which the robot had to stand for a reason outside of wall follow does not count as being stuck."""
+        self._seen_s += dt_s
         if self._progress is not None:
             self._progress = (self._progress[0] + dt_s, self._progress[1])
 
@@ -96,38 +99,36 @@ class WallFollow:
         mirrored = (odometry[0], self._side * odometry[1], self._side * odometry[2])
         if self._path is None or scan_s != self._scan_s:
             self._scan_s = scan_s
-            self._look(self._standing(points), mirrored)
-            if self._is_lost:
-                self._end = Along(0.0, 0.0, WallStatus.LOST, "the wall that was followed is not there any more")
-                return self._end
+            self._look(self._standing(points), mirrored, now_s)
         if self._path is None:
             self._progress = None
             return Along(0.0, 0.0, WallStatus.NO_WALL, f"no wall within {self.reach_m:.1f} m that there is room beside")
+        if now_s - self._seen_s > LOST_S:
+            self._end = Along(0.0, 0.0, WallStatus.LOST, "the wall that was followed is not there any more")
+            return self._end
         along = self._drive(_seen_from(self._path.points, self._at, mirrored))
         return self._judged(along, now_s, odometry)
 
     # ---------------------------------------------------------------- looking
 
     def _standing(self, points: Array) -> Array:
-        """(n, 2) mirrored, of what does not move; without what would stand within the robot: a ghost of a beam that was dazzled."""
+        """(n, 2) mirrored, of what does not move. Without ghosts of beams that were dazzled: what would stand within the robot, or all alone."""
         stands = points[(points[:, 3] == 0.0) & (points[:, 4] == 0.0), :2]
         planes = self._outline.planes
         is_outside = (stands @ planes[:, :2].T > planes[:, 2]).any(axis=1)
-        return np.ascontiguousarray(stands[is_outside] * (1.0, self._side))
+        return np.ascontiguousarray(stands[is_outside & ~_is_alone(stands)] * (1.0, self._side))
 
-    def _look(self, stands: Array, robot: Planar) -> None:
-        """Work out the path anew."""
-        ball = None if self._ball is None else _ball_from(self._ball, self._at, robot)
-        path = None if ball is None else plan(stands, ball, self.wish)
-        if path is None:
+    def _look(self, stands: Array, robot: Planar, now_s: float) -> None:
+        """Work out the path anew, from where the ball was last or else from the nearest wall. Where neither leads along the wall that is
+        followed, the last path holds: a thin wall is hard to see edge-on."""
+        path = None if self._path is None else plan(stands, _ball_from(self._path.ball, self._at, robot), self.wish)
+        if path is None or path.off_m > NEAR_M:
             ball = find_wall(stands, self.wish)
-            path = None if ball is None else plan(stands, ball, self.wish)
-        self._path, self._at = path, robot
-        self._ball = None if path is None else path.ball
-        self._is_lost = self._is_there and (path is None or self._off_m(path) > self.parameters.lost_m)
-
-    def _off_m(self, path: WallPath) -> float:
-        return math.hypot(*path.points[path.foot, :2])
+            other = None if ball is None else plan(stands, ball, self.wish)
+            path = path if other is None or (path is not None and path.off_m < other.off_m) else other
+        if self._is_there and (path is None or path.off_m > self.parameters.lost_m):
+            return
+        self._path, self._at, self._seen_s = path, robot, now_s
 
     # ---------------------------------------------------------------- driving
 
@@ -170,6 +171,21 @@ class WallFollow:
             self._end = Along(0.0, 0.0, WallStatus.STUCK, f"came no farther along the wall for {self.parameters.stuck_after_s:g} s")
             return self._end
         return along
+
+
+def _is_alone(points: Array) -> NDArray[np.bool_]:
+    """Which near points (n, 2) have no other beside them."""
+    squares = np.floor(points / ALONE_M).astype(np.intp)
+    if not len(points):
+        return np.zeros(0, dtype=bool)
+    low = squares.min(axis=0) - 1
+    i, j = (squares - low).T
+    count = np.zeros((int(i.max()) + 2, int(j.max()) + 2), dtype=np.intp)
+    np.add.at(count, (i, j), 1)
+    rows = count[:-2] + count[1:-1] + count[2:]
+    around = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
+    alone: NDArray[np.bool_] = (around[i - 1, j - 1] < 2) & (np.hypot(points[:, 0], points[:, 1]) < ALONE_WITHIN_M)
+    return alone
 
 
 def _seen_from(path: Array, before: Planar, now: Planar) -> Array:

@@ -19,5 +19,5 @@ class WallParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     opening_m: Annotated[Positive, Meta(description="doors and gaps that are narrower than this are passed by")] = 1.8
     fillet_m: Annotated[NotNegative, Meta(description="radius of the robot's path in inner corners")] = 0.35
     look_m: Annotated[Positive, Meta(description="a wall that is farther away is not found")] = 4.0
-    lost_m: Annotated[Positive, Meta(description="a wall that is suddenly so much farther away is lost")] = 1.5
-    stuck_after_s: Annotated[Positive, Meta(description="without progress along the wall for so long the robot is stuck")] = 20.0
+    lost_m: Annotated[Positive, Meta(description="what is suddenly so much farther away is another wall")] = 1.0
+    stuck_after_s: Annotated[Positive, Meta(description="without progress along the wall for so long the robot is stuck")] = 40.0

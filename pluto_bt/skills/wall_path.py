@@ -65,6 +65,11 @@ class WallPath(NamedTuple):
     distance_m: float
     ball: Ball
 
+    @property
+    def off_m(self) -> float:
+        """How far the robot is from the path."""
+        return math.hypot(*self.points[self.foot, :2])
+
 
 def find_wall(points: Array, wish: Wish) -> Ball | None:
     """A ball at rest on the nearest thing, on the left if there is one; None where nothing stands or the ball has no room."""
