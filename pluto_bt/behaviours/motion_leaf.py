@@ -90,7 +90,7 @@ class MotionLeaf(Leaf):
             c = self._ticket.command
             self._was_accepted = False
             self._posted_s = self.now_s()
-            self._ticket = robot.command(c.flags, c.position, c.velocity, c.acceleration[0], c.force[0])
+            self._ticket = robot.command(c.flags, c.position, c.velocity, c.acceleration[0], c.force)
 
     # ---------------------------------------------------------------- for subclasses
 
@@ -100,7 +100,8 @@ class MotionLeaf(Leaf):
         return self._last_s - self._start_s
 
     def post(
-        self, robot: Robot, kind: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0
+        self, robot: Robot, kind: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
     ) -> None:
         """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
         devices = robot.platform.devices
@@ -108,7 +109,7 @@ class MotionLeaf(Leaf):
         flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
         self._post_flags(robot, flags, position, velocity, tolerance_m, force)
 
-    def _post_flags(self, robot: Robot, flags: int, position: Pair, velocity: Pair, tolerance_m: float, force: float) -> None:
+    def _post_flags(self, robot: Robot, flags: int, position: Pair, velocity: Pair, tolerance_m: float, force: float | tuple[float, ...]) -> None:
         if self._ticket is None or self._was_accepted:  # else the time without an answer goes on
             self._posted_s = self._last_s
         self._moves, self._was_accepted = True, False
