@@ -37,6 +37,7 @@ class JobRunner:
         is_new, job = self._context.jobs.take()
         if not is_new:
             return
+        self._core.note("job", text=msgspec.json.encode(job).decode())
         self._core.end_job("stopped")
         self._job = self._link = None
         if job is not None:

@@ -1,0 +1,149 @@
+"""Notes for the black box what each step of the executive did: orders, statuses, feedback, blackboard, commands, the situation.
+
+Only what changed is noted, and every so often all of it, so that any tick can be told without reading the whole file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import msgspec
+
+from pluto_bt.behaviours.robot import Ticket
+from pluto_bt.blackboard.messages import Pose
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.situation import SituationWatch
+from pluto_bt.record.codec import encode
+from pluto_bt.record.entries import KEYFRAME_EVERY, Branch, NodeRow, Posted, Situation, Tick, Tree
+from pluto_bt.trees.executive import Activity, Executive
+from pluto_bt.trees.scopes import EMPTY, Scope
+
+_AS_IS = (bool, int, float, str)
+
+
+class Whole:
+    """A note that a topic is to be kept whole from here on."""
+
+    __slots__ = ("samples", "topic")
+
+    def __init__(self, topic: int, samples: tuple[Any, ...]) -> None:
+        self.topic, self.samples = topic, samples
+
+
+class BranchLog:
+    """One tree: what was last told of it."""
+
+    def __init__(self, activity: Activity) -> None:
+        self.activity = activity
+        self._tracked = activity.mission.nodes()
+        self._scopes: list[Scope] = list({id(one.plan.scope): one.plan.scope for one in self._tracked}.values())
+        self._feedback: list[str] = [""] * len(self._tracked)
+        self._seqs: dict[tuple[int, str], int] = {}
+
+    def tree(self, role: str) -> Tree:
+        """The tree itself."""
+        mission = self.activity.mission
+        rows = tuple(NodeRow(one.path, one.plan.type_name, one.plan.name, one.plan.depth) for one in self._tracked)
+        return Tree(run=self.activity.number, role=role, name=mission.name, nodes=rows, text=mission.origin.text, file=mission.origin.file)
+
+    def branch(self, statuses: str, is_key: bool) -> Branch:
+        """What changed in this tick; everything if `is_key`."""
+        if is_key:
+            self._feedback = [""] * len(self._tracked)
+            self._seqs.clear()
+        activity = self.activity
+        feedback: dict[int, str] = {}
+        for i, tracked in enumerate(self._tracked):
+            words = tracked.node.feedback_message
+            if words != self._feedback[i]:
+                self._feedback[i] = feedback[i] = words
+        board, gone = self._board()
+        return Branch(activity.number, activity.ticks, statuses, feedback, board, gone, activity.state, activity.reason, activity.text)
+
+    def _board(self) -> tuple[dict[str, Any], tuple[str, ...]]:
+        changed: dict[str, Any] = {}
+        here: set[tuple[int, str]] = set()
+        for number, scope in enumerate(self._scopes):
+            for key, entry in list(scope.entries.items()):
+                if entry.value is EMPTY:
+                    continue
+                place = (number, key)
+                here.add(place)
+                if self._seqs.get(place) != entry.seq:
+                    self._seqs[place] = entry.seq
+                    changed[_label(scope, key)] = plain(entry.value)
+        if len(here) == len(self._seqs):
+            return changed, ()
+        gone = [place for place in self._seqs if place not in here]
+        for place in gone:
+            del self._seqs[place]
+        return changed, tuple(_label(self._scopes[number], key) for number, key in gone)
+
+
+class TickLog:
+    """Writes notes into the queue of the black box."""
+
+    def __init__(self, context: Context, core: Executive, note: Callable[[Any], None]) -> None:
+        self._context, self._core, self._note = context, core, note
+        self._robot = context.system.robot
+        self._robot.on_command = self._on_command
+        self._watch = SituationWatch(context)
+        self._situation: Situation | None = None
+        self._pose = context.board.reader("Localization/Pose")
+        self._branches: dict[int, BranchLog] = {}
+        self._commands: list[Posted] = []
+        self._whole: dict[int, int] = {}  # row of a topic that is kept whole -> sequence number told last
+        self._steps = 0
+
+    def step(self, now_ns: int, now_s: float, ticked: list[Activity], lines: list[str]) -> None:
+        """Note one step of the executive, if anything happened in it."""
+        orders = tuple((done.verb, done.run, done.text) for done in self._core.take_done())
+        situation = self._watch.look(now_s)
+        if not ticked and not orders and situation == self._situation:
+            return
+        is_key = self._steps % KEYFRAME_EVERY == 0
+        trees = tuple(self._branch(activity, line, is_key) for activity, line in zip(ticked, lines, strict=True))
+        sample = self._pose()
+        pose = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
+        self._note(Tick(
+            now_ns, self._steps, orders, trees, tuple(self._commands), self._seqs(is_key), None if pose is None else (pose[0], pose[1], pose[3]),
+            situation if is_key or situation != self._situation else None, is_key,
+        ))  # fmt: skip
+        self._commands.clear()
+        self._situation = situation
+        self._steps += 1
+
+    def _branch(self, activity: Activity, line: str, is_key: bool) -> Branch:
+        log = self._branches.get(activity.number)
+        if log is None:
+            role = "job" if activity is self._core.job else "errand" if activity is self._core.errand else "mission"
+            self._branches = {number: kept for number, kept in self._branches.items() if not kept.activity.is_over}
+            log = self._branches[activity.number] = BranchLog(activity)
+            self._note(log.tree(role))
+        return log.branch(line, is_key)
+
+    def _seqs(self, is_key: bool) -> dict[str, int]:
+        """The sequence numbers that this tick saw, as far as they are news; a topic that is read for the first time is kept from now on."""
+        board, snapshot = self._context.board, self._robot.snapshot
+        seqs: dict[str, int] = {}
+        for index in sorted(self._robot.reads):
+            name, seq = board.topics[index].name, snapshot.seq(index)
+            if index not in self._whole:
+                self._note(Whole(index, tuple(sample for sample in board.history(name) if sample.seq <= seq)))
+            if is_key or self._whole.get(index) != seq:
+                self._whole[index] = seqs[name] = seq
+        return seqs
+
+    def _on_command(self, to: str, ticket: Ticket) -> None:
+        command = ticket.command
+        self._commands.append(Posted(to, command.flags, command.position, command.velocity, ticket.refused))
+
+
+def _label(scope: Scope, key: str) -> str:
+    return f"{scope.name}/{key}" if scope.name else key
+
+
+def plain(value: Any) -> Any:
+    """A value of the blackboard as it is now: it may be changed later."""
+    return value if type(value) in _AS_IS else msgspec.Raw(encode(value))
