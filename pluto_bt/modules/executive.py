@@ -33,7 +33,7 @@ class Executive:
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
-        self._jobs = JobRunner(context, self.core, context.system.robot)
+        self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
         self._shown_statuses = ""
         self._steps = 0
@@ -62,7 +62,7 @@ class Executive:
         if ticked:
             self._show_trees(ticked, lines, now_s)
         if self._log is not None:
-            self._log.step(self._clock.now_ns(), now_s, ticked, lines)
+            self._log.step(now_s, ticked, lines)
         else:
             self.core.take_done()
         self._show_mission(now_s)

@@ -40,6 +40,7 @@ class Recorder:
         self._whole = {i for i, topic in enumerate(self._topics) if topic.period_s == 0.0 and topic.name not in SAID_BY_TICKS}
         self._written: dict[int, int] = {}
         self._next_s = [0.0] * len(self._topics)
+        self._passed: dict[int, Sample] = {}  # the newest sample of a topic that was left out
         self._begin(options.record.run, options.record.files)
         context.board.tap(lambda index, sample: queue.append((index, sample)))
 
@@ -89,7 +90,8 @@ class Recorder:
             writer.message(self._numbers[TREE], Bulk.KEPT, now_ns, note.run, encode(note))
         elif isinstance(note, Whole):
             self._whole.add(note.topic)
-            for sample in note.samples:
+            late = self._passed.pop(note.topic, None)  # written while the tick went on that asked for the topic first
+            for sample in (*note.samples, *(() if late is None else (late,))):
                 self._sample(writer, note.topic, sample)
 
     def _sample(self, writer: McapWriter, index: int, sample: Sample) -> None:
@@ -100,6 +102,7 @@ class Recorder:
             self._written[index] = sample.seq
             bulk = Bulk.LOG if topic.period_s == 0.0 else Bulk.WHOLE
         elif sample.written_s < self._next_s[index]:
+            self._passed[index] = sample
             return
         else:
             bulk = Bulk.THINNED

@@ -15,15 +15,18 @@ from pluto_bt.blackboard.messages import Pose
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.situation import SituationWatch
 from pluto_bt.record.codec import encode
-from pluto_bt.record.entries import KEYFRAME_EVERY, Branch, NodeRow, Posted, Situation, Tick, Tree
+from pluto_bt.record.entries import KEYFRAME_EVERY, STATUS_OF_LETTER, Branch, NodeRow, Posted, Situation, Tick, Tree
 from pluto_bt.trees.executive import Activity, Executive
+from pluto_bt.runtime.clock import NS
 from pluto_bt.trees.scopes import EMPTY, Scope
+from pluto_bt.trees.tracked import Tracked
 
 _AS_IS = (bool, int, float, str)
+LETTER_OF = {word: letter for letter, word in STATUS_OF_LETTER.items()}
 
 
 class Whole:
-    """A note that a topic is to be kept whole from here on."""
+    """A note that a topic is to be kept whole from here on, with the samples that are known of it."""
 
     __slots__ = ("samples", "topic")
 
@@ -40,15 +43,18 @@ class BranchLog:
         self._scopes: list[Scope] = list({id(one.plan.scope): one.plan.scope for one in self._tracked}.values())
         self._feedback: list[str] = [""] * len(self._tracked)
         self._seqs: dict[tuple[int, str], int] = {}
+        self._finished: list[tuple[int, str]] = []
+        activity.mission.watch(lambda number, word: self._finished.append((number, LETTER_OF[word])))
 
     def tree(self, role: str) -> Tree:
         """The tree itself."""
         mission = self.activity.mission
-        rows = tuple(NodeRow(one.path, one.plan.type_name, one.plan.name, one.plan.depth) for one in self._tracked)
+        rows = tuple(_row(one) for one in self._tracked)
         return Tree(run=self.activity.number, role=role, name=mission.name, nodes=rows, text=mission.origin.text, file=mission.origin.file)
 
-    def branch(self, statuses: str, is_key: bool) -> Branch:
-        """What changed in this tick; everything if `is_key`."""
+    def branch(self, statuses: str) -> Branch:
+        """What changed in this tick; every so often everything."""
+        is_key = self.activity.ticks % KEYFRAME_EVERY == 1
         if is_key:
             self._feedback = [""] * len(self._tracked)
             self._seqs.clear()
@@ -59,7 +65,8 @@ class BranchLog:
             if words != self._feedback[i]:
                 self._feedback[i] = feedback[i] = words
         board, gone = self._board()
-        return Branch(activity.number, activity.ticks, statuses, feedback, board, gone, activity.state, activity.reason, activity.text)
+        finished, self._finished[:] = tuple(self._finished), ()
+        return Branch(activity.number, activity.ticks, statuses, finished, feedback, board, gone, activity.state, activity.reason, activity.text, is_key)
 
     def _board(self) -> tuple[dict[str, Any], tuple[str, ...]]:
         changed: dict[str, Any] = {}
@@ -87,7 +94,7 @@ class TickLog:
     def __init__(self, context: Context, core: Executive, note: Callable[[Any], None]) -> None:
         self._context, self._core, self._note = context, core, note
         self._robot = context.system.robot
-        self._robot.on_command = self._on_command
+        self._robot.on_command, core.on_begin = self._on_command, self._began
         self._watch = SituationWatch(context)
         self._situation: Situation | None = None
         self._pose = context.board.reader("Localization/Pose")
@@ -96,32 +103,29 @@ class TickLog:
         self._whole: dict[int, int] = {}  # row of a topic that is kept whole -> sequence number told last
         self._steps = 0
 
-    def step(self, now_ns: int, now_s: float, ticked: list[Activity], lines: list[str]) -> None:
+    def step(self, now_s: float, ticked: list[Activity], lines: list[str]) -> None:
         """Note one step of the executive, if anything happened in it."""
         orders = tuple((done.verb, done.run, done.text) for done in self._core.take_done())
         situation = self._watch.look(now_s)
         if not ticked and not orders and situation == self._situation:
             return
         is_key = self._steps % KEYFRAME_EVERY == 0
-        trees = tuple(self._branch(activity, line, is_key) for activity, line in zip(ticked, lines, strict=True))
+        trees = tuple(self._branches[activity.number].branch(line) for activity, line in zip(ticked, lines, strict=True))
         sample = self._pose()
         pose = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
         self._note(Tick(
-            now_ns, self._steps, orders, trees, tuple(self._commands), self._seqs(is_key), None if pose is None else (pose[0], pose[1], pose[3]),
+            round(now_s * NS), self._steps, orders, trees, tuple(self._commands), self._seqs(is_key), None if pose is None else (pose[0], pose[1], pose[3]),
             situation if is_key or situation != self._situation else None, is_key,
         ))  # fmt: skip
         self._commands.clear()
         self._situation = situation
         self._steps += 1
 
-    def _branch(self, activity: Activity, line: str, is_key: bool) -> Branch:
-        log = self._branches.get(activity.number)
-        if log is None:
-            role = "job" if activity is self._core.job else "errand" if activity is self._core.errand else "mission"
-            self._branches = {number: kept for number, kept in self._branches.items() if not kept.activity.is_over}
-            log = self._branches[activity.number] = BranchLog(activity)
-            self._note(log.tree(role))
-        return log.branch(line, is_key)
+    def _began(self, activity: Activity) -> None:
+        role = "job" if activity is self._core.job else "errand" if activity is self._core.errand else "mission"
+        self._branches = {number: kept for number, kept in self._branches.items() if not kept.activity.is_over}
+        log = self._branches[activity.number] = BranchLog(activity)
+        self._note(log.tree(role))
 
     def _seqs(self, is_key: bool) -> dict[str, int]:
         """The sequence numbers that this tick saw, as far as they are news; a topic that is read for the first time is kept from now on."""
@@ -130,7 +134,10 @@ class TickLog:
         for index in sorted(self._robot.reads):
             name, seq = board.topics[index].name, snapshot.seq(index)
             if index not in self._whole:
-                self._note(Whole(index, tuple(sample for sample in board.history(name) if sample.seq <= seq)))
+                seen = snapshot.newest(name)
+                known = board.history(name)
+                first = () if seen is None or (known and known[0].seq <= seq) else (seen,)  # what the tick saw may be history already
+                self._note(Whole(index, first + known))
             if is_key or self._whole.get(index) != seq:
                 self._whole[index] = seqs[name] = seq
         return seqs
@@ -138,6 +145,13 @@ class TickLog:
     def _on_command(self, to: str, ticket: Ticket) -> None:
         command = ticket.command
         self._commands.append(Posted(to, command.flags, command.position, command.velocity, ticket.refused))
+
+
+def _row(tracked: Tracked) -> NodeRow:
+    plan = tracked.plan
+    sort = plan.node_type.kind if plan.node_type is not None else "SubTree"
+    ports = {one.name: one.value for one in plan.element.attributes.values() if one.name not in ("name", "ID")}
+    return NodeRow(tracked.path, plan.type_name, plan.name, plan.depth, sort, ports)
 
 
 def _label(scope: Scope, key: str) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 import msgspec
 
 RUN, TREE, TICK = "pluto/run", "pluto/tree", "pluto/tick"
+STATUS_OF_LETTER = {"I": "IDLE", "R": "RUNNING", "S": "SUCCESS", "F": "FAILURE", "K": "SKIPPED"}
 KEYFRAME_EVERY = 100  # ticks: every so often a tick says all and not only what changed
 
 
@@ -35,12 +36,14 @@ class Run(msgspec.Struct, kw_only=True):
 
 
 class NodeRow(msgspec.Struct, frozen=True, gc=False):
-    """A node of a tree, as it does not change."""
+    """A node of a tree, as it does not change: `kind` is its type, `sort` one of Control, Decorator, SubTree, Action, Condition."""
 
     path: str
     kind: str
     name: str
     depth: int
+    sort: str = "Action"
+    ports: dict[str, str] = {}
 
 
 class Tree(msgspec.Struct, kw_only=True):
@@ -73,20 +76,24 @@ class Branch(msgspec.Struct, gc=False, omit_defaults=True):
     Attributes:
         run, tick: which tree, and its how manyeth tick.
         nodes: one letter a node, depth first: I R S F, K = skipped.
+        finished: the leaves that ended in this tick, in order: (number, S F or K); a parent may have made them idle again since.
         feedback: what changed: number of the node -> its words.
         board: what changed: "scope/key" -> value; `gone`: entries that are no more.
         state: of the tree after the tick, if it ended: succeeded, failed, aborted; `reason` with it.
+        is_key: everything is told, not only what changed.
     """
 
     run: int
     tick: int
     nodes: str
+    finished: tuple[tuple[int, str], ...] = ()
     feedback: dict[int, str] = {}
     board: dict[str, Any] = {}
     gone: tuple[str, ...] = ()
     state: str = "running"
     reason: str = ""
     text: str = ""
+    is_key: bool = False
 
 
 class Link(msgspec.Struct, frozen=True, gc=False, omit_defaults=True):
@@ -129,7 +136,7 @@ class Tick(msgspec.Struct, gc=False, omit_defaults=True):
         seqs: sequence numbers that this tick saw of the topics that leaves read; only those that changed.
         pose: x m, y m, theta rad of `Localization/Pose`.
         situation: if it changed.
-        is_key: everything is told, not only what changed.
+        is_key: `seqs` and `situation` are told whole.
     """
 
     t_ns: int

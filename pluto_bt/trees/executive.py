@@ -91,6 +91,7 @@ class Executive:
         self.errand: Activity | None = None
         self.job: Activity | None = None
         self._job_body = body
+        self.on_begin: Callable[[Activity], None] = lambda activity: None  # before its first tick, in the thread that steps
         self.ticking: Activity | None = None  # for the watchdog: who is at work
 
     @property
@@ -161,6 +162,7 @@ class Executive:
         self._runs += 1
         self.job, self._job_body = Activity(mission, self._runs), body
         self.note("start-job", self._runs)
+        self.on_begin(self.job)
 
     def end_job(self, reason: str) -> None:
         """Halt the tree of the job; harmless if it is over. Called by the thread that steps."""
@@ -197,12 +199,14 @@ class Executive:
         self._runs += 1
         self.mission = Activity(mission, self._runs)
         self.note("start", self._runs)
+        self.on_begin(self.mission)
 
     def _start_errand(self, errand: Activity) -> None:
         if self.errand is not None:
             self.errand.end("preempted")
         self.errand = errand
         self.note("start-errand", errand.number)
+        self.on_begin(errand)
 
     def _end_errand(self, errand: Activity, reason: str) -> None:
         errand.end(reason)

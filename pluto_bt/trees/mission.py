@@ -214,6 +214,15 @@ class Mission:
 
         return begin
 
+    def watch(self, listen: Callable[[int, str], None]) -> None:
+        """Call `listen` (number of the node depth first, what it told its parent) whenever a leaf ends: SUCCESS, FAILURE or SKIPPED.
+
+        A status alone does not tell it: a parent that ends in the same tick wipes it away.
+        """
+        for number, tracked in enumerate(self._tracked):
+            if not tracked.node.children:
+                tracked.node.step = _watched(number, tracked.node.step, listen)
+
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""
         return list(self._tracked)
@@ -228,6 +237,16 @@ class Mission:
             if tracked.path in seen:
                 tracked.path = f"{tracked.path}::{tracked.plan.uid}"
             seen.add(tracked.path)
+
+
+def _watched(number: int, step: Callable[[], Result], listen: Callable[[int, str], None]) -> Callable[[], Result]:
+    def watched() -> Result:
+        result = step()
+        if result is not RUNNING:
+            listen(number, NAME_OF_STATUS[result])
+        return result
+
+    return watched
 
 
 def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
