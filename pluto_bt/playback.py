@@ -10,13 +10,14 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from importlib import resources
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import msgspec
 
 from pluto_bt.behaviours.robot import Ticket
-from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample
+from pluto_bt.blackboard import TOPICS, Blackboard, Inbox
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.commands.inputs import Inputs, Request, read_inputs
 from pluto_bt.modules.context import Context
@@ -24,12 +25,13 @@ from pluto_bt.modules.job_runner import JobRunner
 from pluto_bt.modules.robot_link import RobotLink
 from pluto_bt.modules.tick_log import BranchLog
 from pluto_bt.modules.topic_globals import TopicGlobals
-from pluto_bt.record.box import Box
+from pluto_bt.record.box import Box, open_box
 from pluto_bt.record.codec import encode
-from pluto_bt.record.entries import Branch, NodeRow, Posted, Tick
+from pluto_bt.record.entries import STATUS_OF_LETTER, Branch, NodeRow, Posted, Tick
+from pluto_bt.record.story import ended
 from pluto_bt.runtime.clock import StepClock, VirtualClock
 from pluto_bt.skills.jobs import Job
-from pluto_bt.source import PlutoError
+from pluto_bt.source import Faults, PlutoError
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import Activity, Executive
 
@@ -64,15 +66,23 @@ class _Inbox(Inbox):
 
 
 class Playback:
-    """One repetition of a run. `files`: the folder of its unpacked files."""
+    """One repetition of a run.
 
-    def __init__(self, box: Box, files: Path, nodes: Sequence[type] = ()) -> None:
-        """Raises: InputError for files that cannot be read any more; PlaybackError if the beginning of the run was dropped."""
+    Attributes:
+        ticks: how many ticks of the recording were executed again; a file that was cut short may end before its inputs do.
+    """
+
+    def __init__(self, box: Box, files: Path, nodes: Sequence[type] = (), mission: Path | None = None) -> None:
+        """`files`: the folder of the run's unpacked files; `mission`: another mission to run instead of the recorded one.
+
+        Raises: InputError for files that cannot be read any more; PlaybackError if the beginning of the run was dropped."""
         if not box.is_from_start:
             raise PlaybackError("the first ticks were dropped for want of room (record.limit_mb), so the run cannot be repeated")
         self._box = box
-        self.inputs = _inputs(box, files, nodes)
-        self._files, self._nodes = files, tuple(nodes)
+        self._main = mission or files / box.run.mission
+        self.inputs = _inputs(box, files, self._main, nodes)
+        self._nodes = tuple(nodes)
+        self.ticks = 0
         self._clock: VirtualClock | StepClock = VirtualClock() if box.run.mode == "lockstep" else StepClock()
         self._board = Blackboard(TOPICS)
         self._topics = TopicGlobals(lambda: self._robot.snapshot)
@@ -97,7 +107,10 @@ class Playback:
         """Every difference, tick by tick; the first one is the one that counts."""
         for number in range(len(self._box)):
             tick = self._box.tick(number)
+            if not self._feed.up_to(tick):
+                return
             yield from self._step(tick)
+            self.ticks += 1
 
     def refusal(self) -> str:
         """What the robot answered to this command when it was recorded."""
@@ -110,7 +123,6 @@ class Playback:
             self._clock.jump_to(tick.t_ns)
         else:
             self._clock.step_to(now_s)
-        self._feed.up_to(tick)
         self._posted, self._expected = [], tick.commands
         for verb, run, text in tick.orders:
             self._order(verb, run, text)
@@ -163,7 +175,7 @@ class Playback:
             mission = self._load(tree.text)
         elif self._started == 1:
             given: dict[str, Any] = {"tree": self._box.run.tree, "ports": self._box.run.ports}
-            mission = self._load(self._files / self._box.run.mission, file=tree.file, **given)
+            mission = self._load(self._main, **given)
         else:
             shipped = resources.files("missions") / Path(tree.file).name  # the gateway starts shipped missions by name
             mission = self._load(str(shipped))
@@ -188,9 +200,12 @@ class Playback:
             return
         for recorded, here in zip(tick.trees, now, strict=True):
             rows = self._box.trees[recorded.run].nodes
+            if len(recorded.nodes) != len(here.nodes):
+                yield differs("number of nodes", len(recorded.nodes), len(here.nodes))
+                return
             if recorded.nodes != here.nodes:
-                i = next((i for i, (a, b) in enumerate(zip(recorded.nodes, here.nodes, strict=False)) if a != b), 0)
-                yield differs(f"status of {rows[i].path if i < len(rows) else 'a node'}", recorded.nodes[i : i + 1], here.nodes[i : i + 1])
+                i = next(i for i, (a, b) in enumerate(zip(recorded.nodes, here.nodes, strict=True)) if a != b)
+                yield differs(f"status of {rows[i].path}", STATUS_OF_LETTER[recorded.nodes[i]], STATUS_OF_LETTER[here.nodes[i]])
             if recorded.finished != here.finished:
                 yield differs("leaves that ended", _ends(rows, recorded), _ends(rows, here))
             yield from _entries(differs, "feedback of ", {rows[i].path: text for i, text in recorded.feedback.items()},
@@ -223,28 +238,62 @@ class _Feed:
         self._next = dict.fromkeys(names, 0)
         self._board = board
 
-    def up_to(self, tick: Tick) -> None:
-        """Write what came before this tick. Raises: PlaybackError if a sample that the tick saw is not there."""
+    def up_to(self, tick: Tick) -> bool:
+        """Write what came before this tick. False if the recording was cut short before. Raises: PlaybackError if a sample was dropped."""
         for name, seq in tick.seqs.items():
             samples, at = self._samples[name], self._next[name]
             while at < len(samples) and samples[at].seq <= seq:
                 self._board.put_back(name, samples[at])
                 at += 1
             self._next[name] = at
-            if seq and (at == 0 or samples[at - 1].seq != seq):
+            if seq and at == len(samples) and (at == 0 or samples[-1].seq < seq):
+                return False
+            if seq and samples[at - 1].seq != seq:
                 raise PlaybackError(f"tick {tick.step} ({tick.t_s:.2f} s) saw a sample of {name} that the file does not hold (any more)")
+        return True
 
 
-def _inputs(box: Box, files: Path, nodes: Sequence[type]) -> Inputs:
+def _inputs(box: Box, files: Path, mission: Path, nodes: Sequence[type]) -> Inputs:
     """What the run was made of, read from the unpacked files."""
     run = box.run
     x_m, y_m, theta_rad = run.start
     request = Request(
-        mission=str(files / run.mission), world=str(files / run.world), map=str(files / run.map) if run.map else None,
+        mission=str(mission), world=str(files / run.world), map=str(files / run.map) if run.map else None,
         start=f"{x_m!r},{y_m!r},{math.degrees(theta_rad)!r}", platform=str(files / "platform.toml"), tree=run.tree,
         port=[f"{name}={value}" for name, value in run.ports.items()], seed=str(run.seed), set=run.settings, plugin=run.plugins,
     )  # fmt: skip
     return read_inputs(request, files, nodes)
 
 
-__all__ = ["Difference", "Playback", "PlaybackError", "Sample"]
+def differences(box: Box, nodes: Sequence[type] = (), mission: Path | None = None, most: int = 100) -> tuple[list[Difference], int]:
+    """The first differences between a run and its repetition, and how many ticks were executed. Raises: InputError, PlaybackError."""
+    with box.unpacked() as files:
+        playback = Playback(box, files, nodes, mission)
+        return list(islice(playback.run(), most)), playback.ticks
+
+
+def replay_file(path: str | Path, nodes: Sequence[type] = (), mission: str | Path | None = None) -> list[Difference]:
+    """The differences between the run in a black box and its repetition; none if all ticks are identical.
+
+    Args:
+        nodes: leaves of the user's own.
+        mission: another mission file to run on the recorded inputs, such as the newer version of the one that was recorded.
+    Raises: InputError for a file that is no black box; PlaybackError for one that does not hold all inputs.
+    """
+    return differences(_opened(path), nodes, None if mission is None else Path(mission))[0]
+
+
+def story_of(path: str | Path) -> list[tuple[str, str]]:
+    """The leaves of the mission that ended, in order: (path, status). Raises: InputError."""
+    return [(one.path, one.status) for one in ended(_opened(path))]
+
+
+def _opened(path: str | Path) -> Box:
+    faults = Faults()
+    box = open_box(Path(path), str(path), faults)
+    faults.raise_errors()
+    assert box is not None  # else there was a fault
+    return box
+
+
+__all__ = ["Difference", "Playback", "PlaybackError", "differences", "replay_file", "story_of"]

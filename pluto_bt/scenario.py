@@ -71,6 +71,7 @@ class Play:
         world: str | None = None,
         *,
         mission: str,
+        map: str | None = None,
         ports: Mapping[str, Any] | None = None,
         seed: int | None = None,
         platform: str | None = None,
@@ -89,7 +90,7 @@ class Play:
         Raises: InputError with every fault of the files.
         """
         request = Request(
-            mission=mission, world=world, start=start, platform=platform, tree=tree, seed=None if seed is None else str(seed), set=tuple(settings),
+            mission=mission, world=world, map=map, start=start, platform=platform, tree=tree, seed=None if seed is None else str(seed), set=tuple(settings),
             port=[f"{name}={text_of(value)}" for name, value in (ports or {}).items()],
         )  # fmt: skip
         events: list[Event] = []
