@@ -90,7 +90,8 @@ class Play:
         Raises: InputError with every fault of the files.
         """
         request = Request(
-            mission=mission, world=world, map=map, start=start, platform=platform, tree=tree, seed=None if seed is None else str(seed), set=tuple(settings),
+            mission=mission, world=world, map=map, start=start, platform=platform, tree=tree, set=tuple(settings),
+            seed=None if seed is None else str(seed),
             port=[f"{name}={text_of(value)}" for name, value in (ports or {}).items()],
         )  # fmt: skip
         events: list[Event] = []

@@ -6,7 +6,6 @@ below, so that a status reaches the top in one go; a command wakes each link on 
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from pluto_bt.gateway.listen import Address
 from pluto_bt.guard import Guard
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.notebook import Notebook
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.robot_link import RobotLink
 from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock
@@ -124,7 +124,7 @@ class System:
             board=self.board, clock=self.clock, platform=self.options.robot, inboxes=self.inboxes, devices=self.simulator.devices,
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
             order_module=self.order_module, silent_s=self.silent_s, latch=self.latch, joined=self, own_clock=self.options.own_clock,
-            black_box=deque() if self.options.record is not None else None,
+            black_box=None if self.options.record is None else Notebook(TOPICS, self.options.robot.record.thinned_period_s),
         )  # fmt: skip
         self.robot = RobotLink(context)
         return context

@@ -114,6 +114,7 @@ class Blackboard:
             raise TopicError("two topics with one name")
         self._newest: list[Sample | None] = [None] * len(self.topics)
         self._history: list[deque[Sample] | None] = [deque(maxlen=topic.history) if topic.history > 1 else None for topic in self.topics]
+        self._aging = [(i, topic.stale_after_s, topic.name) for i, topic in enumerate(self.topics) if topic.stale_after_s > 0.0]
         self._given: set[int] = set()  # topics whose publisher has been handed out
         self._watchers: list[tuple[Callable[[], None], ...]] = [()] * len(self.topics)
         self._lock = threading.Lock()
@@ -155,6 +156,15 @@ class Blackboard:
         index = self.index_of(name)
         sample, limit_s = self._newest[index], self.topics[index].stale_after_s
         return sample is None or (limit_s > 0.0 and now_s - sample.value.stamp_s > limit_s)
+
+    def stale(self, now_s: float) -> dict[str, float]:
+        """Every topic that was written and is older than the table allows -> the stamp of its newest value (s)."""
+        found: dict[str, float] = {}
+        for index, limit_s, name in self._aging:
+            sample = self._newest[index]
+            if sample is not None and now_s - sample.value.stamp_s > limit_s:
+                found[name] = sample.value.stamp_s
+        return found
 
     def history(self, name: str) -> tuple[Sample, ...]:
         """The last samples, oldest first, as many as the table keeps."""

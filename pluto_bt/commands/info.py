@@ -51,7 +51,7 @@ def _lines(facts: dict[str, Any]) -> list[str]:
     ports = " ".join(f"{name}={value}" for name, value in facts["ports"].items())
     lines = [
         f"{facts['file']}: {facts['bytes'] / 1e6:.2f} MB{cut}",
-        f"  run       {facts['mission']} in {facts['world']} with {facts['platform']}, seed {facts['seed']}, {facts['mode']}, pluto {facts['version']}",
+        f"  run       {facts['mission']} in {facts['world']} with {facts['platform']}, seed {facts['seed']}, {facts['mode']}",
         f"  ticks     {facts['ticks']}, {facts['from_s']:.1f} s to {facts['to_s']:.1f} s{old}",
         f"  outcome   {outcome}",
     ]

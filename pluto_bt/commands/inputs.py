@@ -127,9 +127,9 @@ def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
 def _robot(asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
     """The robot asked for, else the world's, else the default; a path in a world file is taken from its folder, too."""
     named = world.robot.platform if world is not None and asked is None else ""
-    name = asked if asked is not None else named or DEFAULT_PLATFORM
+    name = _platform_name(asked, world, beside)
     try:
-        return load_robot_file(_platform_name(asked, world, beside), settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
+        return load_robot_file(name, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
     except InputError as error:
         faults.extend(error.faults)
         return None

@@ -30,7 +30,8 @@ def _check(name: str | None, option: str, endings: tuple[str, ...], faults: Faul
         return
     place, path = Place(f"{option} {name}"), Path(name)
     if endings and path.suffix not in endings:
-        faults.error(place, "bad-option", f"{option} does not write this format", expected=" or ".join(endings), found=path.suffix or name or "nothing")
+        what, found = f"{option} does not write this format", path.suffix or name or "nothing"
+        faults.error(place, "bad-option", what, expected=" or ".join(endings), found=found)
     elif path.suffix in INPUT_ENDINGS:
         faults.error(place, "bad-option", "this is the ending of an input file", expected="FILE.jsonl", found=path.suffix)
     elif os.path.isdir(path):

@@ -23,7 +23,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--at", metavar="T", help="the tree and the blackboard at this time of the run (s)")
     parser.add_argument("--step", action="store_true", help=f"go through it by hand: {KEYS}")
     parser.add_argument("--execute", action="store_true", help="run the real tree on the recorded inputs and tell the first tick that differs")
-    parser.add_argument("--mission", metavar="M.xml", help="with --execute: run this mission instead, for example a newer version of the recorded one")
+    parser.add_argument("--mission", metavar="M.xml", help="with --execute: run this mission instead, such as a newer version of it")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_box, read_time
 

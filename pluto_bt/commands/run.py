@@ -58,8 +58,8 @@ def _run(args: argparse.Namespace) -> RunResult:
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
     progress = Progress(sys.stderr if args.json else sys.stdout, watch=args.watch)
-    runner = make_runner(inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record, gateway=args.gateway,
-                         on_event=progress.event, on_progress=progress.show)  # fmt: skip
+    runner = make_runner(inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
+                         gateway=args.gateway, on_event=progress.event, on_progress=progress.show)  # fmt: skip
     with runner.interruptible():
         result = runner.run()
     progress.end(result)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import msgspec
 
@@ -14,6 +13,7 @@ from pluto_bt.blackboard import Blackboard, Inbox
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.modules.job_box import JobBox
+from pluto_bt.modules.notebook import Notebook
 from pluto_bt.modules.post_box import PostBox
 from pluto_bt.runtime import Clock
 from pluto_bt.runtime.clock import StepClock
@@ -68,7 +68,7 @@ class Context:
     order_module: Callable[[str, bool], None] = lambda name, run: None
     joined: System | None = None
     own_clock: StepClock | None = None
-    black_box: deque[Any] | None = None
+    black_box: Notebook | None = None
 
     @property
     def mission_clock(self) -> Clock:

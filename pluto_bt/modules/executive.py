@@ -38,7 +38,7 @@ class Executive:
         self._shown_statuses = ""
         self._steps = 0
         self._own_clock = context.own_clock
-        self._log = TickLog(context, self.core, context.black_box.append) if context.black_box is not None else None
+        self._log = TickLog(context, self.core, context.black_box) if context.black_box is not None else None
 
     def start(self, now_s: float) -> None:
         """Nothing to take."""

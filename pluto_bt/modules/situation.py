@@ -19,8 +19,6 @@ class SituationWatch:
         self._links = {name: newest(context, topic) for name, topic in LINKS.items()}
         self._raw = newest(context, "ATRV2/Drive/Raw")
         self._drive_command = newest(context, "drive/command")
-        limited = [topic for topic in context.board.topics if topic.stale_after_s > 0.0]
-        self._aging = [(topic.name, topic.stale_after_s, newest(context, topic.name)) for topic in limited]
         self._told: dict[str, tuple[FVectorState, Link]] = {}
 
     def look(self, now_s: float) -> Situation:
@@ -28,19 +26,19 @@ class SituationWatch:
         system = self._context.system
         hold, activity, ended = self._context.latch.held, system.executive.core.mission, system.guard.ended
         links = {name: self._link(name, status) for name, read in self._links.items() if (status := read()) is not None}
-        stale = {name: value.stamp_s for name, limit_s, read in self._aging if (value := read()) is not None and now_s - value.stamp_s > limit_s}
         modules = {part.module.name: _trouble(part.state, part.fault, part.error) for part in system.parts if part.state != "running" or part.fault}
         raw, command = self._raw(), self._drive_command()
         return Situation(
-            links=links, stale=stale, modules=modules, hold=("", "") if hold is None else (hold.word, hold.text),
+            links=links, stale=self._context.board.stale(now_s), modules=modules, hold=("", "") if hold is None else (hold.word, hold.text),
             moves=_is_moving(raw), wanted=isinstance(command, ActuatorState) and command.velocity != (0.0, 0.0),
-            mission=("", "") if activity is None else (activity.state, activity.reason), ended=("", "") if ended is None else (ended.reason, ended.text),
+            mission=("", "") if activity is None else (activity.state, activity.reason),
+            ended=("", "") if ended is None else (ended.reason, ended.text),
         )  # fmt: skip
 
     def _link(self, name: str, status: FVectorState) -> Link:
         """What a link says, made anew only where it says something new."""
         last = self._told.get(name)
-        if last is not None and (last[0] is status or (last[0].element, last[0].reason, last[0].text) == (status.element, status.reason, status.text)):
+        if last is not None and last[0] is status:
             return last[1]
         link = Link(status.element, status.reason, status.text)
         self._told[name] = (status, link)

@@ -5,7 +5,6 @@ Only what changed is noted, and every so often all of it, so that any tick can b
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import msgspec
@@ -13,25 +12,17 @@ import msgspec
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.blackboard.messages import Pose
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.notebook import Notebook
 from pluto_bt.modules.situation import SituationWatch
 from pluto_bt.record.codec import encode
 from pluto_bt.record.entries import KEYFRAME_EVERY, STATUS_OF_LETTER, Branch, NodeRow, Posted, Situation, Tick, Tree
-from pluto_bt.trees.executive import Activity, Executive
 from pluto_bt.runtime.clock import NS
+from pluto_bt.trees.executive import Activity, Executive
 from pluto_bt.trees.scopes import EMPTY, Scope
 from pluto_bt.trees.tracked import Tracked
 
 _AS_IS = (bool, int, float, str)
 LETTER_OF = {word: letter for letter, word in STATUS_OF_LETTER.items()}
-
-
-class Whole:
-    """A note that a topic is to be kept whole from here on, with the samples that are known of it."""
-
-    __slots__ = ("samples", "topic")
-
-    def __init__(self, topic: int, samples: tuple[Any, ...]) -> None:
-        self.topic, self.samples = topic, samples
 
 
 class BranchLog:
@@ -66,7 +57,8 @@ class BranchLog:
                 self._feedback[i] = feedback[i] = words
         board, gone = self._board()
         finished, self._finished[:] = tuple(self._finished), ()
-        return Branch(activity.number, activity.ticks, statuses, finished, feedback, board, gone, activity.state, activity.reason, activity.text, is_key)
+        end = (activity.state, activity.reason, activity.text)
+        return Branch(activity.number, activity.ticks, statuses, finished, feedback, board, gone, *end, is_key)
 
     def _board(self) -> tuple[dict[str, Any], tuple[str, ...]]:
         changed: dict[str, Any] = {}
@@ -89,10 +81,10 @@ class BranchLog:
 
 
 class TickLog:
-    """Writes notes into the queue of the black box."""
+    """Writes into the notebook of the black box."""
 
-    def __init__(self, context: Context, core: Executive, note: Callable[[Any], None]) -> None:
-        self._context, self._core, self._note = context, core, note
+    def __init__(self, context: Context, core: Executive, notebook: Notebook) -> None:
+        self._context, self._core, self._notebook = context, core, notebook
         self._robot = context.system.robot
         self._robot.on_command, core.on_begin = self._on_command, self._began
         self._watch = SituationWatch(context)
@@ -113,8 +105,9 @@ class TickLog:
         trees = tuple(self._branches[activity.number].branch(line) for activity, line in zip(ticked, lines, strict=True))
         sample = self._pose()
         pose = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
-        self._note(Tick(
-            round(now_s * NS), self._steps, orders, trees, tuple(self._commands), self._seqs(is_key), None if pose is None else (pose[0], pose[1], pose[3]),
+        self._notebook.note(Tick(
+            round(now_s * NS), self._steps, orders, trees, tuple(self._commands), self._seqs(is_key),
+            None if pose is None else (pose[0], pose[1], pose[3]),
             situation if is_key or situation != self._situation else None, is_key,
         ))  # fmt: skip
         self._commands.clear()
@@ -125,7 +118,7 @@ class TickLog:
         role = "job" if activity is self._core.job else "errand" if activity is self._core.errand else "mission"
         self._branches = {number: kept for number, kept in self._branches.items() if not kept.activity.is_over}
         log = self._branches[activity.number] = BranchLog(activity)
-        self._note(log.tree(role))
+        self._notebook.note(log.tree(role))
 
     def _seqs(self, is_key: bool) -> dict[str, int]:
         """The sequence numbers that this tick saw, as far as they are news; a topic that is read for the first time is kept from now on."""
@@ -134,10 +127,9 @@ class TickLog:
         for index in sorted(self._robot.reads):
             name, seq = board.topics[index].name, snapshot.seq(index)
             if index not in self._whole:
-                seen = snapshot.newest(name)
-                known = board.history(name)
-                first = () if seen is None or (known and known[0].seq <= seq) else (seen,)  # what the tick saw may be history already
-                self._note(Whole(index, first + known))
+                self._notebook.will_keep(index)
+                seen = snapshot.newest(name)  # the board may have a newer one already
+                self._notebook.keep(index, (*board.history(name), *(() if seen is None else (seen,))))
             if is_key or self._whole.get(index) != seq:
                 self._whole[index] = seqs[name] = seq
         return seqs

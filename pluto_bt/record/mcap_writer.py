@@ -157,7 +157,7 @@ class McapWriter:
         """Write a record; (where it stands, its length)."""
         builder = RecordBuilder()
         record.write(builder)
-        data, at = builder.end(), self._file.tell()
+        data, at = bytes(builder.end()), self._file.tell()  # type: ignore[no-untyped-call]  # the library types only half of itself
         self._file.write(data)
         if not isinstance(record, (DataEnd, Footer)):
             self._preamble += len(data)
@@ -233,9 +233,11 @@ class McapWriter:
         """Everything but chunks, in front."""
         self._file.write(MAGIC)
         self._put(Header(PROFILE, "pluto_bt"))
-        for record in (*self._schemas.values(), *self._channels):
+        records: list[McapRecord] = [*self._schemas.values(), *self._channels]
+        for record in records:
             self._put(record)
-        for index in (*self._metadata, *self._attachments):
+        known: list[MetadataIndex | AttachmentIndex] = [*self._metadata, *self._attachments]
+        for index in known:
             old.seek(index.offset)
             data = old.read(index.length)
             index.offset = self._file.tell()
