@@ -107,9 +107,9 @@ class Playback:
         """Every difference, tick by tick; the first one is the one that counts."""
         for number in range(len(self._box)):
             tick = self._box.tick(number)
-            if not self._feed.up_to(tick):
-                return
             yield from self._step(tick)
+            if self._feed.is_at_its_end:
+                return
             self.ticks += 1
 
     def refusal(self) -> str:
@@ -119,11 +119,13 @@ class Playback:
 
     def _step(self, tick: Tick) -> Iterator[Difference]:
         now_s = tick.t_ns / 1e9
+        self._posted, self._expected = [], tick.commands  # also what a timer does between two ticks
         if isinstance(self._clock, VirtualClock):
             self._clock.jump_to(tick.t_ns)
         else:
             self._clock.step_to(now_s)
-        self._posted, self._expected = [], tick.commands
+        if not self._feed.up_to(tick):
+            return
         for verb, run, text in tick.orders:
             self._order(verb, run, text)
         self._jobs.take_orders()
@@ -237,6 +239,7 @@ class _Feed:
         self._samples = box.samples(names)
         self._next = dict.fromkeys(names, 0)
         self._board = board
+        self.is_at_its_end = False
 
     def up_to(self, tick: Tick) -> bool:
         """Write what came before this tick. False if the recording was cut short before. Raises: PlaybackError if a sample was dropped."""
@@ -247,6 +250,7 @@ class _Feed:
                 at += 1
             self._next[name] = at
             if seq and at == len(samples) and (at == 0 or samples[-1].seq < seq):
+                self.is_at_its_end = True
                 return False
             if seq and samples[at - 1].seq != seq:
                 raise PlaybackError(f"tick {tick.step} ({tick.t_s:.2f} s) saw a sample of {name} that the file does not hold (any more)")

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import zstandard
 from mcap.exceptions import McapError
-from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Header, McapRecord, Metadata, Schema
+from mcap.records import Attachment, Channel, Chunk, Footer, McapRecord, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader, get_chunk_data_stream
 
 from pluto_bt.source import Faults, Place
@@ -62,11 +62,10 @@ class McapFile:
             reader = StreamReader(file, emit_chunks=True, record_size_limit=RECORD_BYTES)
             try:
                 for record in reader.records:
-                    if isinstance(record, DataEnd):
-                        self.is_whole = True  # what follows says again what was said
+                    if isinstance(record, Footer):
+                        self.is_whole = True
                         return
-                    if not isinstance(record, Header | Footer):
-                        yield record
+                    yield record
             except _BROKEN:
                 return
 

@@ -134,15 +134,13 @@ class McapWriter:
             if chunk.records and now_ns - chunk.start_ns >= CHUNK_NS:
                 self._close_chunk(bulk)
         self._file.flush()
-        if self._file.tell() > self.limit_bytes:
-            self._shrink()
+        self._keep_limit()
 
     def finish(self) -> None:
         """Write what waits, and the index; close the file."""
         for bulk in Bulk:
             self._close_chunk(bulk)
-        if self._file.tell() > self.limit_bytes:
-            self._shrink()
+        self._keep_limit()
         self._put(DataEnd(0))
         start = self._file.tell()
         for record in self._summary():
@@ -197,6 +195,12 @@ class McapWriter:
         return [*self._schemas.values(), *self._channels, statistics, *chunks, *self._attachments, *self._metadata]
 
     # -- the limit
+
+    def _keep_limit(self) -> None:
+        """Shrink if the file, with the index that it will have, is too large."""
+        index = self._preamble + sum(80 + 10 * len(chunk.at.message_index_offsets) for chunk in self._chunks)
+        if self._file.tell() + index > self.limit_bytes:
+            self._shrink()
 
     def _shrink(self) -> None:
         """Copy the file without its oldest, bulkiest chunks; the old one stays until the new one is whole."""
