@@ -48,9 +48,8 @@ class Publisher:
 
 def enclosing(samples: tuple[Sample, ...], stamp_s: float) -> tuple[Sample, Sample] | None:
     """The two samples, of those oldest first, whose stamps enclose `stamp_s`, for interpolation; None if it lies outside."""
-    stamps = [sample.value.stamp_s for sample in samples]
-    i = bisect.bisect_left(stamps, stamp_s)
-    if i < len(samples) and stamps[i] == stamp_s:
+    i = bisect.bisect_left(samples, stamp_s, key=_stamp)
+    if i < len(samples) and samples[i].value.stamp_s == stamp_s:
         return samples[i], samples[i]
     return (samples[i - 1], samples[i]) if 0 < i < len(samples) else None
 
@@ -211,3 +210,6 @@ class Blackboard:
         kept = self._history[index]
         if kept is not None:
             kept.append(sample)
+
+def _stamp(sample: Sample) -> float:
+    return sample.value.stamp_s

@@ -121,9 +121,8 @@ class StepClock:
         self._now_s = now_s
 
 
-def wall_ns() -> int:
-    """The wall's monotonic nanoseconds, for measuring and for the watchdog; never for decisions that a trace holds."""
-    return time.perf_counter_ns()
+wall_ns = time.perf_counter_ns
+"""The wall's monotonic nanoseconds, for measuring and for the watchdog; never for decisions that a trace holds."""
 
 
 def wait(event: threading.Event, seconds: float) -> bool:

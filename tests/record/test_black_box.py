@@ -51,7 +51,7 @@ def test_a_run_in_lockstep_is_told_tick_by_tick_and_runs_again_identically(scena
     assert [tree.role for tree in box.trees.values()] == ["mission", "job"]
     now = box.now(box.number_at(2.0))
     assert now.trees[1].board == {"n": 3, "seen": pytest.approx(2.0, abs=0.05), "There::10/x": 8}
-    assert dict((row.path, status) for row, status, _, _ in now.trees[1].rows())["GoTo::8"] == "RUNNING"
+    assert {row.path: status for row, status, _, _ in now.trees[1].rows()}["GoTo::8"] == "RUNNING"
     assert box.now(len(box) - 1).trees[1].board == {"n": 3, "There::10/x": 8}, "what was unset is gone"
     assert replay_file(tmp_path / "a.mcap") == []
 
@@ -75,10 +75,14 @@ def test_a_run_in_threads_runs_again_identically(scenario: Play, mission: str, t
     assert replay_file(tmp_path / "a.mcap") == []
 
 
-@pytest.mark.parametrize("fault", ['device="leaf:AlwaysSuccess" kind="raise"', 'device="laser" kind="off" for="3"', 'device="module:avoid" kind="raise"'])
+FAULTS = ('device="leaf:AlwaysSuccess" kind="raise"', 'device="laser" kind="off" for="3"', 'device="module:avoid" kind="raise"')
+
+
+@pytest.mark.parametrize("fault", FAULTS)
 def test_what_goes_wrong_goes_wrong_again(scenario: Play, mission: str, tmp_path: Path, fault: str) -> None:
     world = tmp_path / "w.xml"
-    world.write_text(f'<world name="w"><wall id="w">-3,-3 12,-3 12,9</wall><script><at t="2"><fault {fault}/></at></script></world>', encoding="utf-8")
+    script = f'<script><at t="2"><fault {fault}/></at></script>'
+    world.write_text(f'<world name="w"><wall id="w">-3,-3 12,-3 12,9</wall>{script}</world>', encoding="utf-8")
     scenario(str(world), mission=mission, record=tmp_path / "a.mcap", max_time_s=40)
     assert replay_file(tmp_path / "a.mcap") == []
 
