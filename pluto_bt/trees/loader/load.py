@@ -22,7 +22,7 @@ from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.mission import Mission, Origin
 from pluto_bt.trees.scopes import Board, Topics
 
 
@@ -36,6 +36,13 @@ class Reading:
     report: Report
     main: TreeSource | None = None
     plan: Plan | None = None
+    text: str = ""
+    file: str = ""
+
+    @property
+    def origin(self) -> Origin:
+        """Where the mission came from."""
+        return Origin(self.text, self.file, tuple(self.files.paths))
 
 
 def load_mission(
@@ -82,7 +89,7 @@ def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())
-    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context)
+    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
@@ -134,8 +141,10 @@ def read_mission(
 
 def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, models: Sequence[str | Path]) -> None:
     if isinstance(text_or_path, str) and text_or_path.lstrip("\ufeff \t\r\n").startswith("<"):
+        reading.text = text_or_path
         reading.files.read_text(text_or_path, file or "")
     else:
+        reading.file = str(text_or_path)
         reading.files.read_file(Path(text_or_path), file or str(text_or_path))
     for path in models:
         reading.files.read_models(Path(path), str(path))
