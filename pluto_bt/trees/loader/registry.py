@@ -15,6 +15,7 @@ from pluto_bt.trees.controls import CONTROLS
 from pluto_bt.trees.decorators import DECORATORS
 from pluto_bt.trees.engine.node import DecoratorNode, Node
 from pluto_bt.trees.leaves import LEAVES
+from pluto_bt.trees.nav2 import NAV2_NODES
 from pluto_bt.trees.ports import PortModel, models_of_class
 
 EXPLICIT_TAGS: Final = ("Action", "Condition", "Control", "Decorator", "SubTree")
@@ -75,7 +76,8 @@ def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[s
         importlib.import_module(plugin)
     registry = get_ports_registry()
     tags = {cls: tag for tag, cls in registry.items()}
-    types = {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
+    types = {name: _own_type(name, cls, builtin=False) for name, cls in NAV2_NODES.items()}
+    types |= {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
     for cls in nodes:
         name = tags.get(cls, cls.__name__)
         types[name] = _own_type(name, cls, builtin=False) if issubclass(cls, Node) else _leaf_type(name, cls)
