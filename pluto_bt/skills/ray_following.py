@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pluto_bt.skills.heading import wrap
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.rays import Openings
@@ -113,7 +113,7 @@ class RayFollowing:
 
     def _must_turn(self, robot: Planar, heading_rad: float, speed_mps: float, rectangle: Rectangle | None) -> bool:
         """True while the robot has to turn on the spot: the way leads far aside, or it would drive out of the rectangle."""
-        off_rad = abs(wrap(heading_rad - robot[2]))
+        off_rad = abs(wrap_angle(heading_rad - robot[2]))
         x, y = robot[0] + AHEAD_S * speed_mps * math.cos(robot[2]), robot[1] + AHEAD_S * speed_mps * math.sin(robot[2])
         leaves = rectangle is not None and rectangle.depth_m(x, y) < min(0.0, rectangle.depth_m(robot[0], robot[1]))
         self._is_turning = off_rad > (TURNED_RAD if self._is_turning else TURN_RAD) or (leaves and off_rad > TURNED_RAD)
@@ -121,7 +121,7 @@ class RayFollowing:
 
     def _can_turn(self, now_s: float, robot: Planar) -> bool:
         """False for a while where turning makes no headway: something stands too near."""
-        if abs(wrap(robot[2] - self._turn_mark_rad)) > TURNING_RAD or now_s - self._turn_mark_s > 2.0 * TURNING_S:
+        if abs(wrap_angle(robot[2] - self._turn_mark_rad)) > TURNING_RAD or now_s - self._turn_mark_s > 2.0 * TURNING_S:
             self._turn_mark_rad, self._turn_mark_s = robot[2], now_s
         elif now_s - self._turn_mark_s > TURNING_S:
             self._may_turn_s = now_s + NO_TURN_S
