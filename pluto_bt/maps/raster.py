@@ -52,7 +52,7 @@ class Frame:
 
     def has(self, x_m: float, y_m: float) -> bool:
         """True if the point lies on the grid."""
-        row, column = self.to_cells(np.array([[x_m, y_m]]))[0].tolist()
+        row, column = map(float, self.to_cells(np.array([[x_m, y_m]]))[0])
         return 0.0 <= row < self.rows and 0.0 <= column < self.columns
 
 

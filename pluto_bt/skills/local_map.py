@@ -19,6 +19,7 @@ from pluto_bt.skills.outline import Array, Planar
 
 Indices = NDArray[np.intp]
 CELLS = 640  # of one side
+CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
 NEVER_S = -1.0
 
@@ -35,7 +36,7 @@ class LocalMap:
 
     def __init__(self, parameters: MotionParameters) -> None:
         self.parameters = parameters
-        self.cell_m = parameters.path_half_width_m / 6.0
+        self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
         self.far_cells = parameters.wide_half_width_m / self.cell_m
         self.forget((0.0, 0.0, 0.0))
@@ -90,6 +91,11 @@ class LocalMap:
         """`clearance_m` at each cell of the straight line from a to b."""
         count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.cell_m) + 1)
         return along_line(self.clearance, *self.place(*a), *self.place(*b), count) * self.cell_m
+
+    def standing(self) -> Array:
+        """The middles (n, 2) in metres of all cells where something stands, as of the last `refresh`."""
+        i, j = np.nonzero(self.clearance < 0.5)
+        return np.column_stack((i + self.i0 + 0.5, j + self.j0 + 0.5)) * self.cell_m
 
     # ------------------------------------------------------------------ seeing
 

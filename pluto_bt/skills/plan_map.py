@@ -7,8 +7,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from pluto_bt.maps.raster import FREE, OCCUPIED, Frame, drawn, frame_of
+from pluto_bt.maps.raster import OCCUPIED, Frame, drawn, frame_of
 from pluto_bt.maps.world import World
+from pluto_bt.skills.local_map import Cell
 from pluto_bt.skills.map_kernels import Floats, clearances
 from pluto_bt.skills.outline import Array
 
@@ -53,6 +54,11 @@ class PlanMap:
         self._seen = (slice(i0, i1), slice(j0, j1))
         self._refresh(i0, i1, j0, j1)
 
+    def unexplained(self) -> Array:
+        """Points (n, 2) of the map that are laid over it now."""
+        columns = self.frame.columns
+        return self.frame.to_map(np.column_stack((self._last // columns + 0.5, self._last % columns + 0.5)))
+
     def _take_back(self) -> None:
         if self._seen is not None:
             self.cells[self._seen] = self._drawn[self._seen]
@@ -62,10 +68,10 @@ class PlanMap:
     def _refresh(self, i0: int, i1: int, j0: int, j1: int) -> None:
         clearances(self.cells, self._low_s, _NEVER_S, i0, i1, j0, j1, self.clearance, math.ceil(self.far_cells), self.far_cells)
 
-    def cell(self, x_m: float, y_m: float) -> tuple[int, int]:
+    def cell(self, x_m: float, y_m: float) -> Cell:
         """The cell of a point of the map, which must lie on it."""
         row, column = np.floor(self.frame.to_cells(np.array([[x_m, y_m]]))).astype(np.intp)[0].tolist()
-        return row, column
+        return Cell(row, column)
 
     def clearances_m(self, points: Array) -> Array:
         """Distance to what stands, at points (n, 2) of the map; 0 beyond its edge."""
@@ -74,7 +80,3 @@ class PlanMap:
         out = np.zeros(len(points))
         out[inside] = self.clearance[cells[inside, 0], cells[inside, 1]] * self.frame.cell_m
         return out
-
-    def is_known_free(self, x_m: float, y_m: float) -> bool:
-        """True if the map says that nothing stands there."""
-        return self.frame.has(x_m, y_m) and bool(self.cells[self.cell(x_m, y_m)] == FREE)
