@@ -16,6 +16,7 @@ from pluto_bt.behaviours.jobs import Explore, Investigate, MoveTo, Resume, SetRe
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.look_around import LookAround, SweepWrist
 from pluto_bt.behaviours.make_turn import MakeTurn
+from pluto_bt.behaviours.nav2 import NAV2_LEAVES
 from pluto_bt.behaviours.navigate_to import NavigateTo
 from pluto_bt.behaviours.paths import FindPath, FollowRay
 from pluto_bt.behaviours.phase import Phase
@@ -32,4 +33,4 @@ ACTIONS: Final[tuple[type[Leaf], ...]] = (
     ReadAlarms, WaitFor, Say,
 )  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
-LEAVES: Final = (*ACTIONS, *CONDITIONS)
+LEAVES: Final = (*ACTIONS, *CONDITIONS, *NAV2_LEAVES)

@@ -105,11 +105,15 @@ class MotionLeaf(Leaf):
         """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
         devices = robot.platform.devices
         has = (Avoidance.SONAR if devices.sonar is not None else 0) | (Avoidance.LASER if devices.laser is not None else 0)
-        flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
+        flags = 10 * (AVOIDANCE[self.avoidance()] & has) + kind
         if self._ticket is None or self._was_accepted:  # else the time without an answer goes on
             self._posted_s = self._last_s
         self._moves, self._was_accepted = True, False
         self._ticket = robot.command(flags, position, velocity, tolerance_m, force, on_the_way=on_the_way)
+
+    def avoidance(self) -> str:
+        """Which sensors slow, stop and steer."""
+        return str(self.get_input("avoid"))
 
     def max_speed_mps(self, robot: Robot) -> float:
         """The port's limit, held within the platform's."""

@@ -6,10 +6,11 @@ from typing import Final
 
 from py_trees.common import Status
 
+from pluto_bt.behaviours.destinations import Destination
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
 from pluto_bt.behaviours.path_driver import PathDriver
-from pluto_bt.behaviours.plan_path import GOAL, TOLERANCE
+from pluto_bt.behaviours.plan_path import GOAL, TOLERANCE, goal_of
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.codes import CommandType
@@ -33,8 +34,11 @@ class NavigateTo(PathDriver):
 
     def begin(self, robot: Robot) -> Status | None:
         """Look up the goal; the rest needs a pose."""
+        wanted = self.wanted()
+        if wanted is None:
+            return self.fail("no-goal", "there is no goal to navigate to")
         try:
-            self._goal = self.get_input("goal").on(robot.map)
+            self._goal = wanted.on(robot.map)
         except LookupError as error:
             return self.fail("no-path", str(error.args[0]))
         self.tolerance_m = float(self.get_input("tolerance_m"))
@@ -43,6 +47,10 @@ class NavigateTo(PathDriver):
         self._blocked_since_s: float | None = None
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)
+
+    def wanted(self) -> Destination | None:
+        """The goal that the mission gives."""
+        return goal_of(self)
 
     def follow(self, robot: Robot) -> Status:
         """Plan where there is no way yet or not any more, else drive."""

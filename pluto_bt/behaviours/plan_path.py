@@ -20,6 +20,15 @@ GOAL: Final = Port(Destination, True, "where to", unit="m")
 TOLERANCE: Final = Port(float, False, "how near counts as reached", 0.3, unit="m", ge=0.05)
 
 
+def goal_of(leaf: Leaf, port: str = "goal") -> Destination | None:
+    """The place that a port gives, or None where it has no value."""
+    try:
+        place: Destination = leaf.get_input(port)
+    except NoDataAvailable:
+        return None
+    return place
+
+
 class Planning(Leaf):
     """A leaf that waits for a pose, then answers at once."""
 
@@ -44,11 +53,8 @@ class Planning(Leaf):
 
     def found_place(self, port: str, robot: Robot) -> Destination | None:
         """The place that a port names, as it lies on the map; None if the port has none. Raises LookupError for a name the map does not know."""
-        try:
-            place: Destination = self.get_input(port)
-        except NoDataAvailable:
-            return None
-        return place.on(robot.map)
+        place = goal_of(self, port)
+        return None if place is None else place.on(robot.map)
 
 
 class PlanPath(Planning):

@@ -73,6 +73,16 @@ class Surroundings:
             grid.forget(self.robot if not self._is_empty else (0.0, 0.0, 0.0))
             grid.covered = covered
 
+    def forget_square(self, middle: Pair, side_m: float, *, inside: bool) -> None:
+        """What was seen in a square round a point (dead reckoning), or outside of it, is not known any more."""
+        for grid in self._grids():
+            grid.erase(middle, side_m, inside=inside)
+
+    @property
+    def is_empty(self) -> bool:
+        """True as long as nobody has looked: then no pose is known either."""
+        return self._is_empty
+
     def _grids(self) -> tuple[LocalMap, ...]:
         return (self.map,) if self.fine is None else (self.map, self.fine)
 

@@ -142,6 +142,20 @@ class LocalMap:
                     self.low_s[a, b] = now_s
         self._changed(float(i), float(j), radius_m)
 
+    def erase(self, middle: tuple[float, float], side_m: float, *, inside: bool) -> None:
+        """Forget what was seen in a square round a point, or outside of it."""
+        (i, j), half = self.place(*middle), 0.5 * side_m / self.cell_m
+        low_i, low_j = (max(0, math.floor(at - half)) for at in (i, j))
+        square = np.s_[low_i : max(0, math.ceil(i + half)), low_j : max(0, math.ceil(j + half))]
+        for grid, blank in ((self.evidence, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S)):
+            kept = grid[square].copy()
+            if inside:
+                grid[square] = blank
+            else:
+                grid[:] = blank
+                grid[square] = kept
+        self._changed(i, j, side_m if inside else CELLS * self.cell_m)
+
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
         if self._window is None:

@@ -11,7 +11,8 @@ from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.plan_parameters import PlanParameters
 
 NEAREST_M = 0.6  # the point ahead is never nearer than this, so that the robot does not slow down before it
-SEARCH_M = 3.0  # the robot is looked for so far along the path from where it was
+SEARCH_M = 3.0  # the robot is looked for so far along the path from where it was,
+BACK_M = 0.3  # and not beyond where the path leads away from it by so much: it may come back by the same way
 CUT_SHARE, MOST_CUT_M, LEAST_CUT_M = 0.5, 0.6, 0.08  # of the spare room beside the path, corners may be cut
 SHARES = (1.0, 0.8, 0.6, 0.45, 0.3)  # of the longest look ahead, that are tried
 CAME_ON_M = 0.3  # so much of the path is headway
@@ -29,7 +30,9 @@ class PathFollowing:
 
     def begin(self, robot: Planar, now_s: float) -> None:
         """Go on from where the robot is."""
-        self.place = int(np.argmin(np.hypot(self._points[:, 0] - robot[0], self._points[:, 1] - robot[1])))
+        away_m = np.hypot(self._points[:, 0] - robot[0], self._points[:, 1] - robot[1])
+        first = int(np.flatnonzero(away_m <= away_m.min() + BACK_M)[0])
+        self.place = first + first_nearest(away_m[first:])
         self._best_m, self._best_s = float(self._at_m[self.place]), now_s
 
     def wait(self, now_s: float) -> None:
@@ -77,7 +80,7 @@ class PathFollowing:
 
     def _advance(self, robot: Planar, now_s: float) -> None:
         stretch = self.stretch(SEARCH_M)
-        self.place += int(np.argmin(np.hypot(stretch[:, 0] - robot[0], stretch[:, 1] - robot[1])))
+        self.place += first_nearest(np.hypot(stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]))
         come_m = float(self._at_m[self.place])
         if come_m > self._best_m + CAME_ON_M:
             self._best_m, self._best_s = come_m, now_s
@@ -96,5 +99,13 @@ class PathFollowing:
         length_m = math.hypot(dx, dy)
         if length_m < 1e-6:
             return True
-        aside = np.abs(dx * (stretch[:, 1] - robot[1]) - dy * (stretch[:, 0] - robot[0])) / length_m
+        x, y = stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]
+        share = np.clip((dx * x + dy * y) / (length_m * length_m), 0.0, 1.0)  # of the way there, where it is nearest to each point
+        aside = np.hypot(x - share * dx, y - share * dy)
         return bool((aside <= self._cut_m[self.place : self.place + len(stretch)]).all())
+
+
+def first_nearest(away_m: Array) -> int:
+    """Where a row of distances is least, before it has grown again by `BACK_M`."""
+    grown = np.flatnonzero(away_m > np.minimum.accumulate(away_m) + BACK_M)
+    return int(np.argmin(away_m[: grown[0]] if len(grown) else away_m))

@@ -30,6 +30,7 @@ class NodeType:
         kind: Action, Condition, Control or Decorator.
         make: the class; None for a model without implementation.
         children: fewest and most children while ticking (None: no limit).
+        missing: what our robots lack for it, of a node that is known by name alone; "" for all others.
         builtin: True for the nodes of BehaviorTree.CPP itself.
     """
 
@@ -40,6 +41,7 @@ class NodeType:
     children: tuple[int, int | None] = (0, 0)
     builtin: bool = False
     description: str = ""
+    missing: str = ""
 
 
 def name_problem(name: str) -> str:
@@ -91,7 +93,7 @@ def _own_type(name: str, cls: type[Node], *, builtin: bool) -> NodeType:
 
 def _leaf_type(tag: str, cls: Any) -> NodeType:
     kind = "Condition" if getattr(cls, "KIND", "Action") == "Condition" else "Action"
-    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_first_line(cls))
+    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_first_line(cls), missing=getattr(cls, "MISSING", ""))
 
 
 def _first_line(cls: Any) -> str:
