@@ -14,6 +14,7 @@ from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.messages import Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
+from pluto_bt.skills.headway import Headway
 from pluto_bt.skills.local_map import CELLS_OF_A_PATH, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
@@ -23,7 +24,7 @@ from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.ways import Way, Ways
 
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
-FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 12.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
+FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
 
@@ -46,6 +47,7 @@ class Surroundings:
         """A job begins; what was seen stays known, what was explored only if the job goes on."""
         self.rectangle = rectangle
         self.blocked = 0
+        self.headway = Headway()
         self.way: Way | None = None
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
         self.object: SeenObject | None = None

@@ -134,13 +134,20 @@ class LocalMap:
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
+        self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
+        self._changed(*self.place(x_m, y_m), radius_m)
+
+    def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
+        """What is here cannot be explored any better: it counts as covered."""
+        self.covered[self._disc(x_m, y_m, radius_m)] = 1
+
+    def _disc(self, x_m: float, y_m: float, radius_m: float) -> tuple[Indices, Indices]:
+        """The cells around a point."""
         reach = math.ceil(radius_m / self.cell_m)
         i, j = self.cell(x_m, y_m)
-        for a in range(max(0, i - reach), min(CELLS, i + reach + 1)):
-            for b in range(max(0, j - reach), min(CELLS, j + reach + 1)):
-                if math.hypot(a - i, b - j) <= reach:
-                    self.low_s[a, b] = now_s
-        self._changed(float(i), float(j), radius_m)
+        a, b = np.mgrid[max(0, i - reach) : min(CELLS, i + reach + 1), max(0, j - reach) : min(CELLS, j + reach + 1)]
+        near = np.hypot(a - i, b - j) <= reach
+        return a[near], b[near]
 
     def erase(self, middle: tuple[float, float], side_m: float, *, inside: bool) -> None:
         """Forget what was seen in a square round a point, or outside of it."""

@@ -67,7 +67,7 @@ class RayFollowing:
             return Advice(BLOCKED, self._point_ahead(robot, 1.0), text="no way made for a while")
         if not self._keep_way(now_s, robot):
             return Advice(LOST, text="there is no way there any more")
-        if math.dist(robot[:2], self._way.points[-1]) < END_M and len(self._way.points) < 2 * END_M / self._map.cell_m + 4:
+        if is_done(self._way, robot, self._map.cell_m):
             return Advice(DONE, text="the end of the path")
         point = self._point_ahead(robot, self._ahead_m)
         heading_rad = math.atan2(point[1] - robot[1], point[0] - robot[0])
@@ -133,3 +133,8 @@ class RayFollowing:
         if not self._way.leads_there:
             return False
         return bool((self._map.evidence[self._map.cells(self._way.points)] < 0).all())
+
+
+def is_done(way: Way, robot: Planar, cell_m: float) -> bool:
+    """True if the robot is at the end of a way, and not only passes it on the other side of a wall."""
+    return math.dist(robot[:2], way.points[-1]) < END_M and len(way.points) < 2 * END_M / cell_m + 4
