@@ -100,20 +100,28 @@ class MotionLeaf(Leaf):
         return self._last_s - self._start_s
 
     def post(
-        self, robot: Robot, kind: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0,
+        self,
+        robot: Robot,
+        kind: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
         force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> None:
         """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
         devices = robot.platform.devices
         has = (Avoidance.SONAR if devices.sonar is not None else 0) | (Avoidance.LASER if devices.laser is not None else 0)
-        flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
-        self._post_flags(robot, flags, position, velocity, tolerance_m, force)
-
-    def _post_flags(self, robot: Robot, flags: int, position: Pair, velocity: Pair, tolerance_m: float, force: float | tuple[float, ...]) -> None:
+        flags = 10 * (AVOIDANCE[self.avoidance()] & has) + kind
         if self._ticket is None or self._was_accepted:  # else the time without an answer goes on
             self._posted_s = self._last_s
         self._moves, self._was_accepted = True, False
-        self._ticket = robot.command(flags, position, velocity, tolerance_m, force)
+        self._ticket = robot.command(flags, position, velocity, tolerance_m, force, on_the_way=on_the_way)
+
+    def avoidance(self) -> str:
+        """Which sensors slow, stop and steer."""
+        return str(self.get_input("avoid"))
 
     def max_speed_mps(self, robot: Robot) -> float:
         """The port's limit, held within the platform's."""

@@ -132,11 +132,23 @@ def read_mission(
     add_library_trees(reading.files)
     expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
     reading.plan = expansion.run(reading.main)
+    _tell_missing(reading)
     for source in own_trees:
         if source.tree_id not in expansion.used and not faults.has_errors:
             what = f"tree {source.tree_id!r} is not used by {reading.main.tree_id!r}"
             reading.report.warning(source.element.place, "unused-tree", what)
     return reading
+
+
+def _tell_missing(reading: Reading) -> None:
+    """Nodes that are known by name alone, where the main tree would run them."""
+    waiting = [reading.plan] if reading.plan is not None else []
+    while waiting:
+        plan = waiting.pop()
+        waiting.extend(plan.children)
+        if plan.node_type is not None and plan.node_type.missing:
+            what = f"<{plan.type_name}> is not there yet: our robots have no {plan.node_type.missing}"
+            reading.report.late(plan.element.place, "not-there-yet", what, expected="another node", found=plan.type_name)
 
 
 def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, models: Sequence[str | Path]) -> None:
