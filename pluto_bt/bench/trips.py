@@ -57,8 +57,9 @@ def rows_of(name: str, trips: Iterable[RunResult], target: str) -> list[BenchRow
     good = [one for one in done if one.result == "SUCCESS" and one.collisions == 0]
     others = ", ".join(sorted({one.reason or one.result for one in done if one not in good}))
     loops = sum(int(one.blackboard["loops"]) for one in done)
-    least_m = min(one.min_clearance_m for one in done)
-    return [BenchRow(name, len(good), f"of {len(done)}", target, f"{loops} loops; least clearance {least_m:.2f} m" + (f"; else {others}" if others else ""))]
+    least_m = min(one.min_clearance_m for one in done if one.min_clearance_m is not None)
+    note = f"{loops} loops; least clearance {least_m:.2f} m" + (f"; else {others}" if others else "")
+    return [BenchRow(name, len(good), f"of {len(done)}", target, note)]
 
 
 def run() -> list[BenchRow]:

@@ -17,6 +17,7 @@ from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.wall_parameters import WallParameters
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
 BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
@@ -31,7 +32,7 @@ class Avoid:
         self._board, self._clock = context.board, context.clock
         self._drive = context.inboxes["drive"]
         self._parameters = context.parameters(AvoidParameters)
-        self._skill = Skill(platform, self._parameters, context.parameters(DriveParameters))
+        self._skill = Skill(platform, self._parameters, context.parameters(DriveParameters), context.parameters(WallParameters))
         self._mount = LaserMount(context.board, platform)
         self._drive_status, self._drive_command = below(context, "drive")
         self._pose, self._dead = newest(context, "Localization/Pose"), newest(context, DEAD_RECKONING)

@@ -173,11 +173,11 @@ def test_after_a_pause_the_command_is_given_again_and_the_pause_is_no_time(stage
     assert stage.clock.now_s() == pytest.approx(62.1, abs=0.2)
 
 
-@pytest.mark.parametrize("leaf", [kind for kind in LEAVES if kind.__name__ not in ("Say", "Phase")])
+@pytest.mark.parametrize("leaf", [kind for kind in (*ACTIONS, *CONDITIONS) if kind.__name__ not in ("Say", "Phase")])
 def test_without_a_robot_a_leaf_fails_with_not_connected(leaf: Any) -> None:
     given = {
         "goal": "1;1", "angle_deg": "90", "heading_deg": "0", "voltage_v": "24", "area": "a", "topic": "wrist/state", "field": "flags", "value": "1",
-        "rectangle": "2;3", "radius_m": "2",
+        "rectangle": "2;3", "radius_m": "2", "path": "1,2;3,4",
     }  # fmt: skip
     ports = " ".join(f'{name}="{given[name]}"' for name, port in leaf.input_ports().items() if port.required)
     reason = 'reason="{why}"' if "reason" in leaf.output_ports() else ""
