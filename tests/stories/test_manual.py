@@ -281,6 +281,15 @@ def test_element_0_is_7_while_the_laser_reboots(robot: Make, flags: int) -> None
     assert r.status.element[0] == 0 and r.velocity[0] > 0.2, "it has rebooted"
 
 
+def test_element_0_is_7_also_at_rest_while_the_laser_reboots(robot: Make) -> None:
+    r = robot(script='<at t="3"><fault device="laser" kind="fatal"/></at>')
+    r.order(32, (0.6, 0.0), (0.5, 0.0))
+    r.run(6.0)
+    assert r.status.element == (7, 1, 0, 0), "reached stays as well"
+    r.run(20.0)
+    assert r.status.element == (0, 1, 0, 0)
+
+
 def test_element_1_by_a_goto_from_running_to_reached_and_stuck(robot: Make) -> None:
     r = robot('<wall id="pen">9,-3 15,-3 15,3 9,3 9,-3</wall>')
     r.order(32, (3.0, 0.0), (0.5, 0.0))
