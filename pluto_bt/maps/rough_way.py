@@ -16,7 +16,7 @@ from pluto_bt.maps.world import World
 
 CELL_M: Final = 0.1
 MOST_CELLS: Final = 100_000
-EDGE_M: Final = 3.0  # room round everything drawn, in which the way may lead round it
+EDGE_M: Final = 3.0  # room round everything drawn, in which a way may lead round it
 Point = tuple[float, float]
 
 
@@ -31,16 +31,24 @@ class RoughWays:
         shape = (math.ceil(height_m / self._cell_m), math.ceil(width_m / self._cell_m))
         self._free = _free_cells(self._origin, self._cell_m, shape, [one for one in (scene, keep_out) if one is not None], radius_m)
 
-    def length_m(self, start: Point, goal: Point) -> float | None:
-        """The length of the shortest way, infinite where there is none; None if an end lies outside of what is drawn."""
-        ends = [self._cell(point) for point in (start, goal)]
-        rows, columns = self._free.shape
-        if any(not (0 <= row < rows and 0 <= column < columns) for row, column in ends):
-            return None
-        return _shortest(self._free, ends[0], ends[1]) * self._cell_m
+    def length_m(self, start: Point, goal: Point) -> float:
+        """The length of the shortest way, infinite where there is none. Outside of everything drawn the ground is free."""
+        cells = [self._cell(point) for point in (start, goal)]
+        beyond_m = sum(math.dist(point, self._middle(cell)) for point, cell in zip((start, goal), cells, strict=True) if not self._is_drawn(point))
+        return _shortest(self._free, *cells) * self._cell_m + beyond_m
 
     def _cell(self, point: Point) -> tuple[int, int]:
-        return int((point[1] - self._origin[1]) / self._cell_m), int((point[0] - self._origin[0]) / self._cell_m)
+        """The cell of a point; of one outside, the nearest at the edge."""
+        rows, columns = self._free.shape
+        row, column = int((point[1] - self._origin[1]) / self._cell_m), int((point[0] - self._origin[0]) / self._cell_m)
+        return min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+
+    def _middle(self, cell: tuple[int, int]) -> Point:
+        return self._origin[0] + (cell[1] + 0.5) * self._cell_m, self._origin[1] + (cell[0] + 0.5) * self._cell_m
+
+    def _is_drawn(self, point: Point) -> bool:
+        middle = self._middle(self._cell(point))
+        return max(abs(point[0] - middle[0]), abs(point[1] - middle[1])) <= self._cell_m
 
 
 def _free_cells(origin: Point, cell_m: float, shape: tuple[int, int], scenes: list[Scene], radius_m: float) -> NDArray[np.bool_]:
