@@ -153,8 +153,8 @@ class LegCheck:
             self._lost.add(goal)
             found = blocked.nearest.owner if blocked is not None else banned.nearest.owner if banned is not None else ""
             what = f"there is no way from {_shown(start)} to {_shown(goal)}"
-            # the world's script may open a way
-            self._error(leg, "no-way", what, "a goal that can be reached", f'"{found}" is in between', is_warning=self._changes)
+            may_be = self._changes or not self._rough_ways().is_sure  # the world's script may open a way
+            self._error(leg, "no-way", what, "a goal that can be reached", f'"{found}" is in between', is_warning=may_be)
         elif leg.way == "straight" and blocked is not None:
             self._tell_blocked(leg, blocked.nearest.owner, blocked.pose_map_robot)
         return max(straight_m, around_m)

@@ -15,13 +15,18 @@ from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import World
 
 CELL_M: Final = 0.1
-MOST_CELLS: Final = 100_000
+MOST_CELLS: Final = 400_000
 EDGE_M: Final = 3.0  # room round everything drawn, in which a way may lead round it
+HALF_DIAGONAL: Final = 0.7072  # of a cell
 Point = tuple[float, float]
 
 
 class RoughWays:
-    """Ways for a disc of `radius_m` through a scene, without actors. `keep_out` is a second scene that may not be entered either."""
+    """Ways for a disc of `radius_m` through a scene, without actors. `keep_out` is a second scene that may not be entered either.
+
+    Attributes:
+        is_sure: where it finds no way there is none. In large worlds the cells are too coarse for that.
+    """
 
     def __init__(self, world: World, scene: Scene, radius_m: float, keep_out: Scene | None = None) -> None:
         low_x, low_y, high_x, high_y = world.bounds_m()
@@ -29,7 +34,11 @@ class RoughWays:
         width_m, height_m = high_x - low_x + 2 * EDGE_M, high_y - low_y + 2 * EDGE_M
         self._cell_m = max(CELL_M, math.sqrt(width_m * height_m / MOST_CELLS))
         shape = (math.ceil(height_m / self._cell_m), math.ceil(width_m / self._cell_m))
-        self._free = _free_cells(self._origin, self._cell_m, shape, [one for one in (scene, keep_out) if one is not None], radius_m)
+        # No way may slip through a wall between two cells; and a disc that just fits may pass half a cell beside their middles.
+        least_m, fitting_m = HALF_DIAGONAL * self._cell_m, radius_m - HALF_DIAGONAL * self._cell_m
+        self.is_sure = fitting_m >= least_m
+        scenes = [one for one in (scene, keep_out) if one is not None]
+        self._free = _free_cells(self._origin, self._cell_m, shape, scenes, max(least_m, fitting_m))
 
     def length_m(self, start: Point, goal: Point) -> float:
         """The length of the shortest way, infinite where there is none. Outside of everything drawn the ground is free."""
@@ -52,7 +61,7 @@ class RoughWays:
 
 
 def _free_cells(origin: Point, cell_m: float, shape: tuple[int, int], scenes: list[Scene], radius_m: float) -> NDArray[np.bool_]:
-    """Cells whose middle is further than the radius from everything. The clearance at one cell tells how far the next are free."""
+    """Cells whose middle is further than `radius_m` from everything. The clearance at one cell tells how far the next are free."""
     free = np.ones(shape, dtype=np.bool_)
     known = np.zeros(shape, dtype=np.bool_)
     tiny = 1e-3 * np.array([[1.0, 0.0], [-0.5, 0.8], [-0.5, -0.8]])  # a point, as an outline
