@@ -15,6 +15,10 @@ COMMANDS = {
     "new": "write a first mission or leaf to start from",
     "ps": "show the modules of a running robot",
     "shell": "talk to a running robot: stop, goto X Y, maketurn DEG, pose, tree",
+    "replay": "a recorded run, tick by tick, or executed again",
+    "info": "what a black box holds",
+    "repair": "make a black box whole that was cut short",
+    "totest": "make a pytest file of a recorded run",
     "bench": "measure, and print ratios",
 }
 

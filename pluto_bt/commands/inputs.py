@@ -55,6 +55,9 @@ class Inputs:
     ports: dict[str, str]
     tree: str | None
     warnings: tuple[Fault, ...] = ()
+    platform: str = DEFAULT_PLATFORM
+    settings: tuple[str, ...] = ()
+    plugins: tuple[str, ...] = ()
 
 
 def add_input_options(parser: argparse.ArgumentParser) -> None:
@@ -89,6 +92,7 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
         faults.extend(examined.faults)
     world = _world(DEFAULT_WORLD if request.world is None else request.world, faults, beside)
     a_priori = None if request.map is None else _world(request.map, faults, beside)
+    platform = _platform_name(request.platform, world, beside)
     robot = _robot(request.platform, world, request.set, faults, beside)
     start, seed = read_start(request.start, faults), read_seed(request.seed, faults)
     if world is not None:
@@ -102,7 +106,8 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
     seed = world.seed if seed is None else seed
-    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order())
+    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order(), platform, tuple(request.set),
+                  tuple(request.plugin))  # fmt: skip
 
 
 def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
@@ -127,16 +132,22 @@ def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
 def _robot(asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
     """The robot asked for, else the world's, else the default; a path in a world file is taken from its folder, too."""
     named = world.robot.platform if world is not None and asked is None else ""
+    name = _platform_name(asked, world, beside)
+    try:
+        return load_robot_file(name, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
+    except InputError as error:
+        faults.extend(error.faults)
+        return None
+
+
+def _platform_name(asked: str | None, world: World | None, beside: Path | None) -> str:
+    """The name or path of the robot file that is meant."""
+    named = world.robot.platform if world is not None and asked is None else ""
     name = asked if asked is not None else named or DEFAULT_PLATFORM
     folders = [beside] if beside is not None else []
     if named and world is not None:
         folders.append(Path(world.file).parent)
-    path = next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
-    try:
-        return load_robot_file(path, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
-    except InputError as error:
-        faults.extend(error.faults)
-        return None
+    return next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
 
 
 __all__ = ["Inputs", "Request", "add_input_options", "check_world", "read_inputs"]

@@ -62,6 +62,7 @@ class MissionFiles:
     node_models: dict[str, Model] = field(default_factory=dict)
     root: XmlElement | None = None
     unnamed: int = 0
+    paths: list[str] = field(default_factory=list)  # of all files that were read, but those of the library
     _open: list[str] = field(default_factory=list)
     _read: set[str] = field(default_factory=set)
 
@@ -74,6 +75,7 @@ class MissionFiles:
     def read_file(self, path: Path, shown: str) -> None:
         """Read a mission file."""
         self.root = read_xml_file(path, shown, self.faults)
+        self.paths.append(str(path))
         if self.root is not None:
             self._open.append(os.path.realpath(path))
             self._take_document(self.root, shown, path.parent)
@@ -179,6 +181,7 @@ class MissionFiles:
         if real in self._read:
             return  # its trees are here already
         self._read.add(real)
+        self.paths.append(str(path))
         self._open.append(real)
         root = read_xml_file(path, shown, self.faults)
         if root is not None:

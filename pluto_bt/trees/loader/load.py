@@ -22,7 +22,7 @@ from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.mission import Mission, Origin
 from pluto_bt.trees.scopes import Board, Topics
 
 
@@ -36,6 +36,13 @@ class Reading:
     report: Report
     main: TreeSource | None = None
     plan: Plan | None = None
+    text: str = ""
+    file: str = ""
+
+    @property
+    def origin(self) -> Origin:
+        """Where the mission came from."""
+        return Origin(self.text, self.file, tuple(self.files.paths))
 
 
 def load_mission(
@@ -82,7 +89,7 @@ def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())
-    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context)
+    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
@@ -125,6 +132,7 @@ def read_mission(
     add_library_trees(reading.files)
     expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
     reading.plan = expansion.run(reading.main)
+    _tell_missing(reading)
     for source in own_trees:
         if source.tree_id not in expansion.used and not faults.has_errors:
             what = f"tree {source.tree_id!r} is not used by {reading.main.tree_id!r}"
@@ -132,10 +140,23 @@ def read_mission(
     return reading
 
 
+def _tell_missing(reading: Reading) -> None:
+    """Nodes that are known by name alone, where the main tree would run them."""
+    waiting = [reading.plan] if reading.plan is not None else []
+    while waiting:
+        plan = waiting.pop()
+        waiting.extend(plan.children)
+        if plan.node_type is not None and plan.node_type.missing:
+            what = f"<{plan.type_name}> is not there yet: our robots have no {plan.node_type.missing}"
+            reading.report.late(plan.element.place, "not-there-yet", what, expected="another node", found=plan.type_name)
+
+
 def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, models: Sequence[str | Path]) -> None:
     if isinstance(text_or_path, str) and text_or_path.lstrip("\ufeff \t\r\n").startswith("<"):
+        reading.text = text_or_path
         reading.files.read_text(text_or_path, file or "")
     else:
+        reading.file = str(text_or_path)
         reading.files.read_file(Path(text_or_path), file or str(text_or_path))
     for path in models:
         reading.files.read_models(Path(path), str(path))
