@@ -53,6 +53,8 @@ LEGS = [
     ("too near to a wall for the body", '<MoveTo goal="7.9;5"/>', ["2:15 error goal-blocked"]),
     ("near enough counts as there", '<GoTo goal="7.3;5" tolerance_m="0.5"/>', []),
     ("no way in", '<MoveTo goal="17;8.5"/>', ["2:15 error no-way"]),
+    ("after what cannot be reached nothing is known", '<Sequence><MoveTo goal="17;8.5"/><GoTo goal="12;5"/></Sequence>', ["2:25 error no-way"]),
+    ("beyond the yard", '<MoveTo goal="40;5"/>', ["2:15 error no-way"]),
     ("into what is forbidden", '<GoTo goal="4;8"/>', ["2:13 error forbidden"]),
     ("through what is forbidden", '<Sequence><GoTo goal="1;8"/><GoTo goal="7;8.2"/></Sequence>', ["2:41 error forbidden"]),
     ("round what is forbidden", '<Sequence><GoTo goal="1;8"/><MoveTo goal="7;8.2"/></Sequence>', []),

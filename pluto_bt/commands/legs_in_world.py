@@ -60,6 +60,7 @@ class LegCheck:
         self._area = MapArea.of(world)
         self._changes = any(isinstance(action, (Remove, Put)) for entry in world.script for action in _actions(entry))
         self._ways: RoughWays | None = None
+        self._lost: set[Point] = set()  # goals that cannot be reached
         self._told: set[tuple[Place, str]] = set()  # a leg in a loop is told once
 
     def run(self, legs: Sequence[Leg]) -> list[LegTold]:
@@ -73,8 +74,10 @@ class LegCheck:
         if goal is None:
             return None
         name = f"{leg.plan.type_name}" + (f' "{leg.plan.name}"' if leg.plan.name != leg.plan.type_name else "")
-        start = leg.start
+        start = leg.start if leg.start not in self._lost else None  # the robot will not be there
         is_sound = self._check_goal(leg, start, goal)
+        if not is_sound:
+            self._lost.add(goal)
         if start is None:
             return LegTold(name, None, goal, None, None)
         length_m = math.dist(start, goal)
@@ -146,14 +149,15 @@ class LegCheck:
             found = f'"{banned.nearest.owner}" at {_shown(banned.pose_map_robot)}'
             self._error(leg, "forbidden", "the straight way leads through what is forbidden", "an allowed way", found, "give a goal between")
         around_m = self._rough_ways().length_m(start, goal)
-        if around_m is not None and math.isinf(around_m):
+        if math.isinf(around_m):
+            self._lost.add(goal)
             found = blocked.nearest.owner if blocked is not None else banned.nearest.owner if banned is not None else ""
             what = f"there is no way from {_shown(start)} to {_shown(goal)}"
-            # the world's script may open a way
-            self._error(leg, "no-way", what, "a goal that can be reached", f'"{found}" is in between', is_warning=self._changes)
+            may_be = self._changes or not self._rough_ways().is_sure  # the world's script may open a way
+            self._error(leg, "no-way", what, "a goal that can be reached", f'"{found}" is in between', is_warning=may_be)
         elif leg.way == "straight" and blocked is not None:
             self._tell_blocked(leg, blocked.nearest.owner, blocked.pose_map_robot)
-        return straight_m if around_m is None else max(straight_m, around_m)
+        return max(straight_m, around_m)
 
     def _tell_blocked(self, leg: Leg, owner: str, pose: Pose) -> None:
         has_eyes = self._robot.devices.laser is not None or self._robot.devices.sonar is not None

@@ -15,13 +15,18 @@ from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import World
 
 CELL_M: Final = 0.1
-MOST_CELLS: Final = 100_000
-EDGE_M: Final = 3.0  # room round everything drawn, in which the way may lead round it
+MOST_CELLS: Final = 400_000
+EDGE_M: Final = 3.0  # room round everything drawn, in which a way may lead round it
+HALF_DIAGONAL: Final = 0.7072  # of a cell
 Point = tuple[float, float]
 
 
 class RoughWays:
-    """Ways for a disc of `radius_m` through a scene, without actors. `keep_out` is a second scene that may not be entered either."""
+    """Ways for a disc of `radius_m` through a scene, without actors. `keep_out` is a second scene that may not be entered either.
+
+    Attributes:
+        is_sure: where it finds no way there is none. In large worlds the cells are too coarse for that.
+    """
 
     def __init__(self, world: World, scene: Scene, radius_m: float, keep_out: Scene | None = None) -> None:
         low_x, low_y, high_x, high_y = world.bounds_m()
@@ -29,22 +34,34 @@ class RoughWays:
         width_m, height_m = high_x - low_x + 2 * EDGE_M, high_y - low_y + 2 * EDGE_M
         self._cell_m = max(CELL_M, math.sqrt(width_m * height_m / MOST_CELLS))
         shape = (math.ceil(height_m / self._cell_m), math.ceil(width_m / self._cell_m))
-        self._free = _free_cells(self._origin, self._cell_m, shape, [one for one in (scene, keep_out) if one is not None], radius_m)
+        # No way may slip through a wall between two cells; and a disc that just fits may pass half a cell beside their middles.
+        least_m, fitting_m = HALF_DIAGONAL * self._cell_m, radius_m - HALF_DIAGONAL * self._cell_m
+        self.is_sure = fitting_m >= least_m
+        scenes = [one for one in (scene, keep_out) if one is not None]
+        self._free = _free_cells(self._origin, self._cell_m, shape, scenes, max(least_m, fitting_m))
 
-    def length_m(self, start: Point, goal: Point) -> float | None:
-        """The length of the shortest way, infinite where there is none; None if an end lies outside of what is drawn."""
-        ends = [self._cell(point) for point in (start, goal)]
-        rows, columns = self._free.shape
-        if any(not (0 <= row < rows and 0 <= column < columns) for row, column in ends):
-            return None
-        return _shortest(self._free, ends[0], ends[1]) * self._cell_m
+    def length_m(self, start: Point, goal: Point) -> float:
+        """The length of the shortest way, infinite where there is none. Outside of everything drawn the ground is free."""
+        cells = [self._cell(point) for point in (start, goal)]
+        beyond_m = sum(math.dist(point, self._middle(cell)) for point, cell in zip((start, goal), cells, strict=True) if not self._is_drawn(point))
+        return _shortest(self._free, *cells) * self._cell_m + beyond_m
 
     def _cell(self, point: Point) -> tuple[int, int]:
-        return int((point[1] - self._origin[1]) / self._cell_m), int((point[0] - self._origin[0]) / self._cell_m)
+        """The cell of a point; of one outside, the nearest at the edge."""
+        rows, columns = self._free.shape
+        row, column = int((point[1] - self._origin[1]) / self._cell_m), int((point[0] - self._origin[0]) / self._cell_m)
+        return min(max(row, 0), rows - 1), min(max(column, 0), columns - 1)
+
+    def _middle(self, cell: tuple[int, int]) -> Point:
+        return self._origin[0] + (cell[1] + 0.5) * self._cell_m, self._origin[1] + (cell[0] + 0.5) * self._cell_m
+
+    def _is_drawn(self, point: Point) -> bool:
+        middle = self._middle(self._cell(point))
+        return max(abs(point[0] - middle[0]), abs(point[1] - middle[1])) <= self._cell_m
 
 
 def _free_cells(origin: Point, cell_m: float, shape: tuple[int, int], scenes: list[Scene], radius_m: float) -> NDArray[np.bool_]:
-    """Cells whose middle is further than the radius from everything. The clearance at one cell tells how far the next are free."""
+    """Cells whose middle is further than `radius_m` from everything. The clearance at one cell tells how far the next are free."""
     free = np.ones(shape, dtype=np.bool_)
     known = np.zeros(shape, dtype=np.bool_)
     tiny = 1e-3 * np.array([[1.0, 0.0], [-0.5, 0.8], [-0.5, -0.8]])  # a point, as an outline
