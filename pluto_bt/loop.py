@@ -63,6 +63,7 @@ class Loop:
             self.wall_time_s = (wall_ns() - begun_ns) / NS
             if isinstance(system.scheduler, Threads):
                 system.scheduler.stop()
+            system.executive.note_end(system.clock.now_s())
             system.stop_parts()
             system.executive.flush(system.clock.now_s())
             system.trace.close()

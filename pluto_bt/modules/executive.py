@@ -78,6 +78,11 @@ class Executive:
             self._events.put(event, now_s)
             self.on_event(event)
 
+    def note_end(self, now_s: float) -> None:
+        """The run is over: note how things stand, also if the executive itself hangs."""
+        if self._log is not None:
+            self._log.step(now_s, [], [])
+
     def _show_trees(self, ticked: list[Activity], lines: list[str], now_s: float) -> None:
         """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""
         for activity, statuses in zip(ticked, lines, strict=True):
