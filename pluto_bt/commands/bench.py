@@ -19,6 +19,7 @@ BENCHES = {
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",
     "jbot": "1000 feet out and back between trees: where the robot believes to be",
+    "resume": "kill -9 at every tick of a mission, then go on",
     "memory": "memory of an hour's simulated run",
 }
 
