@@ -78,7 +78,7 @@ def decide(
         return Resumption(path, Past(hashes))
     doubts = _doubts(past, hashes, start, now_ns, inputs.robot.resume)
     is_same = past.hashes.get("mission") == hashes["mission"]
-    if is_same:
+    if is_same and past.state["nodes"]:
         doubts += [f"entry {key} could not be kept" for key in memory.give_back(mission, past.state)]
     age_s = (now_ns - past.wall_ns) / 1e9
     told = f"a run of this mission was cut off {age_s:.0f} s ago, after {past.tick} ticks"
@@ -103,6 +103,6 @@ def _doubts(past: Past, hashes: dict[str, str], start: Pose | None, now_ns: int,
         turned_deg = abs(math.degrees(math.remainder(start[2] - past.pose[2], math.tau)))
         if away_m > limits.max_distance_m or turned_deg > limits.max_turn_deg:
             found.append(f"the robot is {away_m:.2f} m and {turned_deg:.0f} deg from where it was left")
-    if past.pose is None and past.truth is None:
+    if past.state["nodes"] and past.pose is None and past.truth is None:
         found.append("it is not known where the robot was left")
     return found

@@ -60,7 +60,7 @@ class Past:
     @property
     def has_begun(self) -> bool:
         """True if there is something to resume."""
-        return bool(self.state["nodes"]) and not self.is_over
+        return bool(self.state["nodes"] or self.keys) and not self.is_over
 
 
 _lines = msgspec.json.Decoder(Line)
