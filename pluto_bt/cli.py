@@ -8,6 +8,8 @@ import sys
 COMMANDS = {
     "run": "run a mission in a simulated world",
     "check": "find every fault of missions, worlds, maps and platform files",
+    "fmt": "bring missions and worlds into one canonical form",
+    "diff": "say what differs between two missions, in nodes and ports",
     "tree": "show a mission's tree (ascii, unicode, dot, svg, xhtml, xml)",
     "nodes": "list every node with its ports",
     "new": "write a first mission or leaf to start from",

@@ -13,7 +13,9 @@ from typing import Any
 
 from pluto_bt.behaviours.jobs import JobLeaf
 from pluto_bt.behaviours.look_around import WristTour
+from pluto_bt.behaviours.path_driver import PathDriver
 from pluto_bt.behaviours.paths import FindPath
+from pluto_bt.behaviours.plan_path import Planning
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
@@ -29,7 +31,7 @@ from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 from pluto_bt.trees.journal import Journal
 
-USES_THE_MAP = (WristTour, FindPath)
+USES_THE_MAP = (WristTour, FindPath, Planning, PathDriver)
 
 
 class Runner:

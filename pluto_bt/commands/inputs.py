@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from pluto_bt.commands.files import find_file
-from pluto_bt.commands.missions import mission_faults
+from pluto_bt.commands.missions import examine_file
 from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
 from pluto_bt.commands.plugins import load_plugins
 from pluto_bt.commands.world_checks import check_script, check_start, in_file
@@ -16,6 +16,7 @@ from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
 from pluto_bt.source import Fault, Faults, InputError, Place
+from pluto_bt.trees.checks.world_words import check_world_words
 
 DEFAULT_WORLD, DEFAULT_PLATFORM = "yard.xml", "atrv2"
 
@@ -86,8 +87,9 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
     load_plugins(request.plugin, faults)
     ports = read_ports(request.port, faults)
     mission_path = find_file("mission", request.mission, faults, beside)
-    if mission_path is not None:
-        faults.extend(mission_faults(mission_path, request.mission, nodes, request.tree, ports))
+    examined = examine_file(mission_path, request.mission, nodes, request.tree, ports) if mission_path is not None else None
+    if examined is not None:
+        faults.extend(examined.faults)
     world = _world(DEFAULT_WORLD if request.world is None else request.world, faults, beside)
     a_priori = None if request.map is None else _world(request.map, faults, beside)
     platform = _platform_name(request.platform, world, beside)
@@ -99,6 +101,8 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
         if robot is not None and start is not None:
             check_start(world, robot, start, request.start, faults)
         check_script(world, faults)
+        if examined is not None and examined.plan is not None:
+            faults.extend(check_world_words(examined.plan, world, a_priori or world))
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
     seed = world.seed if seed is None else seed
@@ -106,15 +110,16 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
                   tuple(request.plugin))  # fmt: skip
 
 
-def check_world(name: str, platform: str | None, faults: Faults) -> None:
-    """Check a world alone: its file, its robot and that one's place, the topics and modules of its script."""
+def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
+    """Check a world alone: its file, its robot and that one's place, the topics and modules of its script. Returns what could be read."""
     world = _world(name, faults, None)
     robot = _robot(platform, world, (), faults, None)
     if world is None:
-        return
+        return None, robot
     if robot is not None and world.robot.pose is not None:
         check_start(world, robot, world.robot.pose, None, faults)
     check_script(world, faults)
+    return world, robot
 
 
 def _world(name: str, faults: Faults, beside: Path | None) -> World | None:

@@ -31,7 +31,14 @@ class JobLink(RobotLink):
         self._snapshot = self._robot.snapshot
 
     def command(
-        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> Ticket:
         """Post a command for motion to pass down. A goto that has arrived stands already: no zero velocity takes its status away."""
         if flags == 0 and velocity == (0.0, 0.0) and self._has_arrived():

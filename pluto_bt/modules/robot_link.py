@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard import Snapshot
@@ -14,6 +15,7 @@ from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.scan_views import ScanViews
 from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.plan_parameters import PlanParameters
 from pluto_bt.skills.sight import ScanView
 
 SOURCE = "mission"
@@ -33,6 +35,7 @@ class RobotLink:
         self.resumes = 0
         self.goals: list[Pair] = []  # where missions sent the robot, for pictures
         self._surroundings: Surroundings | None = None
+        self._navigation: Navigation | None = None
         self._views: ScanViews | None = None
         self._goal_s = -AMENDED_WITHIN_S
 
@@ -62,6 +65,14 @@ class RobotLink:
             self._surroundings = Surroundings(self._context.platform, self._context.parameters(MotionParameters))
         return self._surroundings
 
+    @property
+    def navigation(self) -> Navigation:
+        """Planning on the map; made when it is first asked for."""
+        if self._navigation is None:
+            context = self._context
+            self._navigation = Navigation(context.platform, context.map, self.surroundings, context.parameters(PlanParameters))
+        return self._navigation
+
     def scan_views(self) -> Sequence[ScanView]:
         """The laser scans since the last call, with the places they were taken from."""
         if self._views is None:
@@ -69,12 +80,20 @@ class RobotLink:
         return self._views.new(self._snapshot)
 
     def command(
-        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> Ticket:
         """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
         forces = force if isinstance(force, tuple) else (force,)
         command = ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
-        if flags == MotionCommand.MOVETO or (0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO):
+        is_goto = 0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO
+        if flags == MotionCommand.MOVETO or (is_goto and not on_the_way):
             self._note_goal(position, command.stamp_s)
         return self._post("motion", SOURCE, command)
 
