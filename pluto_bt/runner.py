@@ -14,6 +14,7 @@ from typing import Any
 from pluto_bt.behaviours.jobs import JobLeaf
 from pluto_bt.behaviours.look_around import WristTour
 from pluto_bt.behaviours.paths import FindPath
+from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.gateway.listen import parse_address
@@ -35,7 +36,9 @@ class Runner:
         self.inputs = inputs
         self.mission = mission
         with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
-        rehearse(System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock()), with_jobs)
+        with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
+        rehearsed = System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock())
+        rehearse(rehearsed, with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
