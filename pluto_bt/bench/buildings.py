@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 Rng = np.random.Generator
 POST_CORNERS = 16
 DOOR_M = (0.8, 1.5)
+NEAR_M, SETTLED = 0.1, 20  # a camera that is so near to its distance for so many points of the track has arrived
 
 
 @dataclass
@@ -127,14 +128,15 @@ class Kept(NamedTuple):
 
 
 def kept(track: Sequence[TrackPoint], wall: WallParameters, side: str, edges: Array, distance_m: float) -> Kept:
-    """How a run kept the distance, from two seconds after the camera first had it."""
+    """How a run kept the distance, from when the camera first had it for two seconds."""
     poses = [point.pose for point in track]
     cameras = camera_path(poses, wall.camera_back_m, wall.camera_side_m if side == "left" else -wall.camera_side_m)
-    arrived = np.flatnonzero(np.abs(distances(cameras, edges)[0] - distance_m) < 0.1)
+    is_near = np.abs(distances(cameras, edges)[0] - distance_m) < NEAR_M
+    arrived = np.flatnonzero(np.convolve(is_near, np.ones(SETTLED)) >= SETTLED)
     if not len(arrived):
         return Kept(math.inf, math.inf, 0.0)
     corner_m = distance_m + wall.camera_side_m + wall.fillet_m + wall.camera_back_m  # so far from a corner its turn begins to matter
-    return kept_distance(cameras[arrived[0] + 20 :], edges, distance_m, corner_m)
+    return kept_distance(cameras[arrived[0] :], edges, distance_m, corner_m)
 
 
 def camera_path(poses: Sequence[Pose], back_m: float, side_m: float) -> Array:
