@@ -10,10 +10,12 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from pluto_bt.bench.buildings import Building, kept
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.towns import Town
 from pluto_bt.bench.yards import Yard
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.result import RunResult
 from pluto_bt.runner import Runner, make_runner
 
@@ -89,8 +91,25 @@ def objects(folder: Path) -> list[BenchRow]:
     return [*_rows("investigate: objects circled", results, "100"), farthest]
 
 
+def walls(folder: Path) -> list[BenchRow]:
+    """Wall follow around houses and inside rooms, with bays, doors, posts and boxes: how well the camera kept its distance."""
+    results, keeps = [], []
+    for seed in range(3000, 3000 + RUNS):
+        building, platform, side = Building.for_seed(seed)
+        wall = load_robot_file(platform).wall
+        runner = play(folder, f'<WallFollow side="{side}" length_m="{1.1 * building.way_m:.1f}"/>', building.text, 600.0)
+        results.append(runner.result)
+        keeps.append(kept(runner.system.track.points, wall, side, building.edges, wall.distance_m))
+    at_corners = sorted(keep.corner_m for keep in keeps)
+    return [
+        *_rows("wall follow: once around", results, ">= 95"),
+        BenchRow("  camera off its distance beside straight walls", max(keep.straight_m for keep in keeps), "m", "<= 0.15", "the farthest of all"),
+        BenchRow("  at corners, doors and posts", at_corners[len(at_corners) // 2], "m", "<= 0.4", f"median run; the farthest {at_corners[-1]:.2f}"),
+    ]
+
+
 def run() -> list[BenchRow]:
-    """All three, one after the other."""
+    """All of them, one after the other."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        return [*towns(folder), *yards(folder), *objects(folder)]
+        return [*towns(folder), *yards(folder), *objects(folder), *walls(folder)]
