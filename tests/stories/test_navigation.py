@@ -13,41 +13,7 @@ from tests.shared_data import shared_file
 from tests.stories.rooms import House
 
 MISSION = '<root BTCPP_format="4"><BehaviorTree ID="main"><Sequence>{body}</Sequence></BehaviorTree></root>'
-LIKE_NAV2 = """
-<root BTCPP_format="4" main_tree_to_execute="Go">
-  <BehaviorTree ID="Go">
-    <RecoveryNode number_of_retries="4" name="with recovery">
-      <PipelineSequence name="with replanning">
-        <PlannerSelector selected_planner="{planner}" default_planner="GridBased" topic_name="planner_selector"/>
-        <RateController hz="1.0">
-          <RecoveryNode number_of_retries="1" name="plan">
-            <ComputePathToPose goal="{goal}" path="{path}" planner_id="{planner}" error_code_id="{plan_error}" error_msg="{plan_text}"/>
-            <Sequence>
-              <WouldAPlannerRecoveryHelp error_code="{plan_error}"/>
-              <ClearEntireCostmap service_name="global_costmap/clear_entirely_global_costmap"/>
-            </Sequence>
-          </RecoveryNode>
-        </RateController>
-        <RecoveryNode number_of_retries="1" name="follow">
-          <FollowPath path="{path}" controller_id="FollowPath" error_code_id="{follow_error}" error_msg="{follow_text}"/>
-          <Sequence>
-            <WouldAControllerRecoveryHelp error_code="{follow_error}"/>
-            <ClearEntireCostmap service_name="local_costmap/clear_entirely_local_costmap"/>
-          </Sequence>
-        </RecoveryNode>
-      </PipelineSequence>
-      <ReactiveFallback name="recover">
-        <GoalUpdated/>
-        <RoundRobin>
-          <ClearEntireCostmap service_name="global_costmap/clear_entirely_global_costmap"/>
-          <Spin spin_dist="1.57"/>
-          <Wait wait_duration="5"/>
-          <BackUp backup_dist="0.30" backup_speed="0.15"/>
-        </RoundRobin>
-      </ReactiveFallback>
-    </RecoveryNode>
-  </BehaviorTree>
-</root>"""
+LIKE_NAV2 = Path(__file__).resolve().parents[2] / "missions" / "navigate.xml"
 
 
 @pytest.fixture
@@ -84,7 +50,7 @@ def test_a_door_that_is_closed_on_the_way_is_found_closed_and_another_way_taken(
     leaf = closing(plain, (4, 5), 0.9)
     house = House.make(5, "pioneer", 0.9, more=leaf, script='<at t="1"><place id="leaf"/></at>')
     if how == "Nav2":
-        run = tell(LIKE_NAV2, house.text, ports={"goal": "room5"}, max_time_s=300.0)
+        run = tell(LIKE_NAV2.read_text(encoding="utf-8"), house.text, ports={"goal": "room5"}, max_time_s=300.0)
     else:
         run = tell('<NavigateTo goal="room5"/>', house.text, max_time_s=300.0)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
