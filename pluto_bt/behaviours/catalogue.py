@@ -25,12 +25,13 @@ from pluto_bt.behaviours.say import Say
 from pluto_bt.behaviours.stop import Release, Stop
 from pluto_bt.behaviours.topic_compare import TopicCompare, WaitFor
 from pluto_bt.behaviours.velocity import DriveVelocity, HoldHeading
+from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.behaviours.wrist import PointWrist
 
 ACTIONS: Final[tuple[type[Leaf], ...]] = (
     GoTo, CarGoTo, MakeTurn, MoveTo, PlanPath, FollowPath, NavigateTo, Explore, SetRectangle, Investigate, Resume, DriveVelocity, HoldHeading,
-    Stop, Release, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase, TryTurn,
-    ReadAlarms, WaitFor, Say,
+    Stop, Release, WallFollow, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase,
+    TryTurn, ReadAlarms, WaitFor, Say,
 )  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS, *NAV2_LEAVES)

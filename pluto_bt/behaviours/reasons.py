@@ -42,6 +42,7 @@ REASONS: Final[dict[str, Reason]] = {
     "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map"),
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
     "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
+    "no-wall": Reason("wall follow sees no wall within reach, or none with room beside it", "bring the robot nearer to a wall"),
     "nothing-to-resume": Reason("nothing was stopped, and no rectangle was ever set", "start the motion anew"),
     "odometry-frozen": Reason("the wheels are told to turn and the encoders stand still", "free the wheels, or check the encoders"),
     "odometry-stale": Reason("the base delivers no odometry", "check the base"),
@@ -50,11 +51,12 @@ REASONS: Final[dict[str, Reason]] = {
     "outside-rectangle": Reason("the goal or the start is outside the rectangle", "choose a goal inside, or set another rectangle"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
     "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
-    "stuck": Reason("goto comes no nearer to its goal, or the robot cannot free itself", "choose a goal with a clear way, or free it by hand"),
+    "stuck": Reason("the robot gets no farther towards its goal or along its wall", "choose a goal with a clear way, or free it by hand"),
     "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near"),
     "tilted": Reason("the robot leans farther than the platform allows", "bring it to level ground"),
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
+    "wall-lost": Reason("the wall that was followed is not there any more", "look what became of it, then start again near a wall"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
 
@@ -65,6 +67,8 @@ WAITING: Final[dict[str, float]] = {
     "laser-stale": 5.0,
     "sonar-stale": 5.0,
     "no-pose": 3.0,
+    "no-wall": 3.0,
+    "wall-lost": 0.0,
     "odometry-stale": 3.0,
     "odometry-frozen": 10.0,  # the wheels try again every second; escaping from it is another leaf's work
     "chain-stopped": 1.0,

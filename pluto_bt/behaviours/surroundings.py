@@ -101,6 +101,7 @@ class Surroundings:
             for grid in self._grids():
                 grid.forget(self.robot)
             self._is_empty = False
+        self.map.visit(*self.robot[:2])
         self.views = tuple(robot.scan_views())
         for view in self.views:
             if view.laser is not None and self._laser is not None:

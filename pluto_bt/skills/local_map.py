@@ -22,6 +22,7 @@ CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
 NEVER_S = -1.0
+HERE_M = 1.0  # so near to where the robot has been nothing needs a visit, though its laser has not looked there
 
 
 class Cell(NamedTuple):
@@ -39,6 +40,8 @@ class LocalMap:
         self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
         self.far_cells = parameters.wide_half_width_m / self.cell_m
+        n = math.ceil(HERE_M / self.cell_m)
+        self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
         self.forget((0.0, 0.0, 0.0))
 
     def forget(self, middle: Planar) -> None:
@@ -121,6 +124,13 @@ class LocalMap:
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
                         self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
             self._changed(x, y, reach_m)
+
+    def visit(self, x_m: float, y_m: float) -> None:
+        """The robot is here."""
+        i, j = self.cell(x_m, y_m)
+        n = self._here.shape[0] // 2
+        if n <= i < CELLS - n and n <= j < CELLS - n:
+            self.covered[i - n : i + n + 1, j - n : j + n + 1] |= self._here
 
     def warm(self) -> None:
         """Take a level scan and one that looks down, and forget both."""

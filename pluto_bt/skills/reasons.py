@@ -12,6 +12,7 @@ LASER_FATAL = "laser-fatal"
 LASER_STALE = "laser-stale"
 NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
+NO_WALL = "no-wall"
 NOTHING_TO_RESUME = "nothing-to-resume"
 ODOMETRY_FROZEN = "odometry-frozen"
 ODOMETRY_STALE = "odometry-stale"
@@ -23,6 +24,7 @@ SONAR_STALE = "sonar-stale"
 STOPPED = "stopped"
 STUCK = "stuck"
 UNSEEN = "unseen"
+WALL_LOST = "wall-lost"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
@@ -35,6 +37,7 @@ CHAIN_REASONS: dict[str, str] = {
     LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
     NO_DEVICE: "the job needs a device that the platform does not have",
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
+    NO_WALL: "wall follow sees no wall within reach, or none with room beside it",
     NOTHING_TO_RESUME: "45: nothing was stopped, and no rectangle is set",
     OUTSIDE_RECTANGLE: "the goal or the start is outside the rectangle",
     ODOMETRY_FROZEN: "the wheels are told to turn and the encoders stand still: blocked wheels or dead encoders",
@@ -44,6 +47,7 @@ CHAIN_REASONS: dict[str, str] = {
     SONAR: "a sonar hears an obstacle in the way; slower or stopped until it is clear",
     SONAR_STALE: "the sonar is asked for and delivers nothing that can be trusted",
     STOPPED: "stop was commanded, or the link's thread is stopped",
-    STUCK: "goto makes no progress towards the goal",
+    STUCK: "goto makes no progress towards the goal, or wall follow none along the wall",
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
+    WALL_LOST: "the wall that was followed is not there any more",
 }

@@ -43,6 +43,11 @@ class NodeType:
     description: str = ""
     missing: str = ""
 
+    @property
+    def is_ours(self) -> bool:
+        """True for what pluto_bt itself brings; a user's leaf may do what its ports do not tell."""
+        return self.builtin or getattr(self.make, "__module__", "").startswith("pluto_bt.")
+
 
 def name_problem(name: str) -> str:
     """Why `name` cannot be the ID of a tree or a node type, or ""."""
@@ -88,13 +93,16 @@ def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[s
 
 def _own_type(name: str, cls: type[Node], *, builtin: bool) -> NodeType:
     children: tuple[int, int | None] = (1, 1) if issubclass(cls, DecoratorNode) else getattr(cls, "CHILDREN", (0, 0))
-    return NodeType(name, cls.KIND, cls.PORTS, cls, children, builtin, _first_line(cls))
+    return NodeType(name, cls.KIND, cls.PORTS, cls, children, builtin, _about(cls))
 
 
 def _leaf_type(tag: str, cls: Any) -> NodeType:
     kind = "Condition" if getattr(cls, "KIND", "Action") == "Condition" else "Action"
-    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_first_line(cls), missing=getattr(cls, "MISSING", ""))
+    missing = getattr(cls, "MISSING", "")
+    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_about(cls), missing=missing)
 
 
-def _first_line(cls: Any) -> str:
-    return (cls.__dict__.get("__doc__") or "").strip().split("\n")[0]
+def _about(cls: Any) -> str:
+    """The first paragraph of its docstring, on one line."""
+    paragraph = (cls.__dict__.get("__doc__") or "").strip().partition("\n\n")[0]
+    return " ".join(paragraph.split())
