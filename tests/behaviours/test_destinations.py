@@ -93,9 +93,10 @@ def test_a_path_reads_back_as_it_was_written() -> None:
     assert again.length_m == pytest.approx(2.0) and again.end == (1.0, 1.0)
     assert MapPath.from_text("json:" + json.dumps({"header": {}, "poses": [JSON_POSE]})).end == (4.0, 2.0)
     assert len(MapPath.from_text("0;map")) == 0
+    assert MapPath.from_text("1,2;3,4;").points.tolist() == [[1.0, 2.0], [3.0, 4.0]]
 
 
-@pytest.mark.parametrize("text", ["", "1;2;3", "0;map;1", "json:{}", 'json:{"poses": 3}'])
+@pytest.mark.parametrize("text", ["", "1;2;3", "1,2;x", "1,2,3", "0;map;1", "json:{}", 'json:{"poses": 3}'])
 def test_what_is_no_path(text: str) -> None:
     with pytest.raises(ValueError):
         MapPath.from_text(text)
