@@ -23,6 +23,7 @@ SONAR_STALE = "sonar-stale"
 STOPPED = "stopped"
 STUCK = "stuck"
 UNSEEN = "unseen"
+WALKER = "walker"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
@@ -46,4 +47,5 @@ CHAIN_REASONS: dict[str, str] = {
     STOPPED: "stop was commanded, or the link's thread is stopped",
     STUCK: "goto makes no progress towards the goal",
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
+    WALKER: "somebody walks near the way, or may do so out of view; the robot creeps there, or waits",
 }

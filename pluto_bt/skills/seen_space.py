@@ -36,6 +36,7 @@ class SeenSpace:
         self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
         self.count = 0
+        self.believed: Array = np.zeros(0)
         self._corner = (0, 0)  # of the lower left cell, in cells
         self._middle: tuple[int, int] | None = None
         self._last_ranges_m: Array | None = None
@@ -47,19 +48,23 @@ class SeenSpace:
         """The lower left corner in the frame of dead reckoning."""
         return self._corner[0] * CELL_M, self._corner[1] * CELL_M
 
-    def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
-        """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free."""
+    def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> bool:
+        """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free.
+
+        Returns: True if it was level; then `believed` tells which of its beams count.
+        """
         ranges, first, step = scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad
         if abs(tilt_rad) > LEVEL_RAD:
             self._last_ranges_m = None
             self._add_tilted(scan, laser, z_m, tilt_rad)
-            return
-        believed = self._believed(ranges)
+            return False
+        self.believed = believed = self._believed(ranges)
         self._last_ranges_m = ranges
         self._see(
             self.seen, self.stamps, self.spots, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed,
             scan.stamp_s, self._reach_m,
         )  # fmt: skip
+        return True
 
     def _add_tilted(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))

@@ -15,6 +15,7 @@ from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, LaserScan, SonarState
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons, stop_path
+from pluto_bt.skills.approach import Approach
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
@@ -26,6 +27,7 @@ from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing, sonar_code, where_word
 from pluto_bt.skills.stop_path import first_trouble, rim_of
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
+from pluto_bt.skills.walkers import WalkerWatch
 from pluto_bt.skills.wheel_watch import WheelWatch
 
 BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve for slopes and worn brakes
@@ -67,11 +69,14 @@ class StopFilter:
         self._laser, self._sonar = devices.laser, devices.sonar
         self._watch = ScanWatch(devices.laser, p.laser_stale_s, p.laser_holes) if devices.laser else None
         self._ring = SonarRing(devices.sonar, self._outline) if devices.sonar else None
+        self._approach = Approach(self._ring) if self._ring else None
         axes = self._ring.axes.tolist() if self._ring else []
         self._leaves_m = np.array([self._outline.way_out_m(x, y, math.cos(theta), math.sin(theta)) for x, y, theta in axes])
         self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
         self.has_eyes = self._laser is not None or self._sonar is not None
-        self.space = SeenSpace(self._outline, self._window_m(self.limits.speed_mps) + BEHIND_M, p.hear_m) if self.has_eyes else None
+        reach_m = self._window_m(self.limits.speed_mps) if self._laser else max(self._window_m(self.limits.speed_mps), p.hear_m)
+        self.space = SeenSpace(self._outline, reach_m + BEHIND_M, p.hear_m) if self.has_eyes else None
+        self.walkers = WalkerWatch(p.walker_memory_s)
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self._first_trouble = first_trouble.compiled()
         self.verdict = Verdict()
@@ -118,11 +123,13 @@ class StopFilter:
         if scan is None or self._watch is None or self._laser is None or self.space is None or (last is not None and scan.stamp_s == last.stamp_s):
             return
         if self._watch.look(scan, senses.laser) and senses.laser is not None:
-            self.space.add_scan(scan, senses.laser, self._laser.z_m, senses.tilt_rad)
+            is_level = self.space.add_scan(scan, senses.laser, self._laser.z_m, senses.tilt_rad)
+            if is_level:
+                self.walkers.take_scan(scan, senses.laser, self.space.believed)
 
     def _take_echoes(self, senses: FilterSenses, now_s: float) -> None:
         sonar, ring = senses.sonar, self._ring
-        if sonar is None or sonar is self._heard or ring is None or self._sonar is None or self.space is None or senses.sonar_at is None:
+        if sonar is None or sonar is self._heard or ring is None or self._sonar is None or self._approach is None or self.space is None or senses.sonar_at is None:
             return
         self._heard = sonar
         ranges_m = np.array(sonar.ranges_m)
@@ -131,6 +138,9 @@ class StopFilter:
             self.space.drop_echoes()
             return
         self.space.add_echoes(ring.axes, self._leaves_m, ranges_m, self._sonar, senses.sonar_at, sonar.stamp_s)
+        came = self._approach.look(ranges_m, senses.sonar_at, sonar.stamp_s)
+        if len(came):
+            self.walkers.take_echoes(came, sonar.stamp_s)
 
     def _stop_m(self, speed_mps: float) -> float:
         """The way from a decision to standstill."""
@@ -201,13 +211,14 @@ class StopFilter:
     def _cleared(self, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict) -> tuple[Twist, Verdict]:
         """The largest share of a twist whose stopping path is free."""
         figures = self._figures(raw)
-        trouble = self._look_along(twist, figures, robot, now_s)
+        walkers = self.walkers.rows(now_s)
+        trouble = self._look_along(twist, figures, robot, now_s, walkers)
         if trouble[0] == stop_path.CLEAR:
             return twist, verdict
         low, high = 0.0, 1.0
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
-            found = self._look_along((twist[0] * share, twist[1] * share), figures, robot, now_s)
+            found = self._look_along((twist[0] * share, twist[1] * share), figures, robot, now_s, walkers)
             if found[0] == stop_path.CLEAR:
                 low = share
             else:
@@ -226,12 +237,12 @@ class StopFilter:
             self._hold_s, self._outline.reach_m, self._least_m, self._least_m + p.margin_m, p.margin_s, p.creep_mps,
         ])  # fmt: skip
 
-    def _look_along(self, twist: Twist, figures: Array, robot: Planar, now_s: float) -> tuple[int, int, float]:
+    def _look_along(self, twist: Twist, figures: Array, robot: Planar, now_s: float, walkers: Array) -> tuple[int, int, float]:
         space = self.space
         assert space is not None
         return self._first_trouble(
             space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures, *twist,
-            now_s - self.parameters.free_memory_s,
+            now_s - self.parameters.free_memory_s, walkers, now_s - self.parameters.walker_gap_s,
         )  # fmt: skip
 
     def _why(self, trouble: tuple[int, int, float], wanted: Twist, out: Twist) -> Verdict:
@@ -241,6 +252,9 @@ class StopFilter:
         if kind == stop_path.UNSEEN:
             x_m, y_m = self._rim[which, :2].tolist()
             return Verdict(LinkStatus.NORMAL, reasons.UNSEEN, f"{asked}: the outline {where_word(x_m, y_m)} would move where nothing was ever seen")
+        if kind == stop_path.WALKER:
+            x_m, y_m = self._rim[which, :2].tolist()
+            return Verdict(LinkStatus.NORMAL, reasons.WALKER, f"{asked}: the outline {where_word(x_m, y_m)} would move to where somebody may walk")
         assert self.space is not None
         x_m, y_m, layer, _ = self.space.points[which].tolist()
         is_laser = layer == LEVEL and self._laser is not None
