@@ -59,7 +59,7 @@ REASONS: Final[dict[str, Reason]] = {
 
 WAITING: Final[dict[str, float]] = {
     # word → seconds for which a motion leaf lets the chain wait before it fails with that word
-    "bumper": 1.0,
+    "bumper": 4.0,  # who bumped into the robot goes on
     "laser-fatal": 30.0,  # the reboot takes about 20 s
     "laser-stale": 5.0,
     "sonar-stale": 5.0,

@@ -26,12 +26,13 @@ ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes
 
 
 class SeenSpace:
-    """Cells as far as `reach_m` to each side."""
+    """Cells as far as `reach_m` to each side; `fleeting_s` is that of `hear_cones`."""
 
-    def __init__(self, outline: Outline, reach_m: float, hear_m: float) -> None:
+    def __init__(self, outline: Outline, reach_m: float, hear_m: float, fleeting_s: float = 0.0) -> None:
         n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
-        self._outline, self._hear_m, self._reach_m = outline, hear_m, reach_m
+        self._outline, self._hear_m, self._reach_m, self._fleeting_s = outline, hear_m, reach_m, fleeting_s
         self.seen: Array = np.full((n, n), NEVER)
+        self._heard: Array = np.full((n, n), NEVER)
         self.stamps: Array = np.full((2, n, n), NEVER)
         self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
@@ -103,7 +104,8 @@ class SeenSpace:
         if len(self._rounds) == ROUNDS:
             cones[:, CLEAR_TO] = np.minimum(np.minimum(*self._rounds[:2]), heard_m)
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
-        self._hear(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
+        half_cone_rad = math.radians(sonar.cone_deg) / 2.0
+        self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s)
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
@@ -126,7 +128,7 @@ class SeenSpace:
         corner = (at[0] - half, at[1] - half)
         moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
         self._corner, self._middle = corner, at
-        self.seen = _shifted(self.seen, *moved)
+        self.seen, self._heard = _shifted(self.seen, *moved), _shifted(self._heard, *moved)
         self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
         self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
 

@@ -75,7 +75,8 @@ class StopFilter:
         self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
         self.has_eyes = self._laser is not None or self._sonar is not None
         reach_m = self._window_m(self.limits.speed_mps) if self._laser else max(self._window_m(self.limits.speed_mps), p.hear_m)
-        self.space = SeenSpace(self._outline, reach_m + BEHIND_M, p.hear_m) if self.has_eyes else None
+        fleeting_s = max(0.0, p.obstacle_memory_s - p.fleeting_memory_s)
+        self.space = SeenSpace(self._outline, reach_m + BEHIND_M, p.hear_m, fleeting_s) if self.has_eyes else None
         self.walkers = WalkerWatch(p.walker_memory_s)
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self._first_trouble = first_trouble.compiled()
