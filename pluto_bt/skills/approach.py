@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.sonar import SonarRing
+from pluto_bt.skills.sonar import Mask, SonarRing
 
 ROUNDS = 4
 HEAR_M = 3.0
@@ -38,7 +38,7 @@ class Approach:
         near = (ranges_m < HEAR_M) & (first_m - ranges_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
         return self._steady(near) if near.any() else NOTHING
 
-    def _steady(self, near: Array) -> Array:
+    def _steady(self, near: Mask) -> Array:
         """Those of the near ones that came evenly, own motion taken off."""
         heard = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = [self._apexes(robot) for _, robot, _ in self._rounds]
@@ -49,7 +49,7 @@ class Approach:
         x, y, theta = places[-1]
         ranges_m = heard[-1]
         unsure_m = ranges_m * math.sin(self._ring.half_cone_rad)
-        return np.column_stack((x + ranges_m * np.cos(theta), y + ranges_m * np.sin(theta), unsure_m))[found]
+        return np.column_stack((x + ranges_m * np.cos(theta), y + ranges_m * np.sin(theta), unsure_m))[np.flatnonzero(found)]
 
     def _apexes(self, robot: Planar) -> Array:
         """(3, k) x, y, theta of the transducers."""

@@ -1,7 +1,8 @@
-"""The hot loops of `SeenSpace`. A space is three arrays over square cells, in the frame of dead reckoning:
+"""The hot loops of `SeenSpace`. A space is four arrays over square cells, in the frame of dead reckoning:
 
-`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (n, n): the same by the sonar alone. `stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2):
-where, x m, y m; for two heights: LEVEL, the plane of the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
+`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (n, n): the same by the sonar alone.
+`stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2): where, x m, y m; for two heights: LEVEL, the plane of
+the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
 """
 
 from __future__ import annotations
