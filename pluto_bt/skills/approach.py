@@ -14,8 +14,10 @@ ROUNDS = 4
 HEAR_M = 3.0
 NEARER_M = 0.12  # over the rounds: four sigma of a difference of two echoes, and 0.4 m/s
 EVENLY = 0.6  # of the whole, at most, in one round: what comes into a cone from its side comes in one leap
-SLOPE = 1.5  # metres that a slanting wall comes nearer for each metre that the cone's end moves sideways
-SIDEWAYS_M = 0.1  # a cone that sweeps farther sideways over the rounds meets ever new things
+SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands across the way
+WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
+STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
+TURNING_M = 0.06
 LONGEST_S = 0.7  # older rounds do not belong to the same approach
 
 
@@ -42,10 +44,11 @@ class Approach:
         """Those of the near ones that came evenly, own motion taken off."""
         heard = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = [self._apexes(robot) for _, robot, _ in self._rounds]
-        sideways_m, steps_m = np.array([self._own_m(*two, heard[i]) for i, two in enumerate(pairwise(places))]).transpose(1, 0, 2)
-        came_m = heard[:-1] - heard[1:] - steps_m
+        own_m = np.array([self._own_m(*two) for two in pairwise(places)])
+        came_m = heard[:-1] - heard[1:] - own_m
         total_m = came_m.sum(axis=0)
-        found = near & (total_m > NEARER_M) & (came_m.max(axis=0) < EVENLY * total_m) & (sideways_m.sum(axis=0) < SIDEWAYS_M)
+        swept_m = np.minimum(heard[-1], HEAR_M) * np.abs(places[-1][2] - places[0][2])
+        found = near & (total_m > NEARER_M) & (came_m.max(axis=0) < EVENLY * total_m) & (swept_m < TURNING_M)
         x, y, theta = places[-1]
         ranges_m = heard[-1]
         unsure_m = ranges_m * math.sin(self._ring.half_cone_rad)
@@ -57,14 +60,14 @@ class Approach:
         c, s = math.cos(robot[2]), math.sin(robot[2])
         return np.array((robot[0] + c * axes[:, 0] - s * axes[:, 1], robot[1] + s * axes[:, 0] + c * axes[:, 1], robot[2] + axes[:, 2]))
 
-    def _own_m(self, before: Array, after: Array, ranges_m: Array) -> tuple[Array, Array]:
-        """How far each cone's end went sideways by the robot's own step, and how much nearer what stands can have come by that step."""
+    def _own_m(self, before: Array, after: Array) -> Array:
+        """(k,) how much nearer what stands can have come by the robot's own step; infinite where that cannot be said."""
         dx, dy = after[0] - before[0], after[1] - before[1]
-        aside_rad = np.abs(np.remainder(np.arctan2(dy, dx) - after[2] + np.pi, 2.0 * np.pi) - np.pi)
         way_m = np.hypot(dx, dy)
-        sideways_m = way_m * np.sin(aside_rad) + np.minimum(ranges_m, HEAR_M) * np.abs(after[2] - before[2])
-        ahead_m = np.maximum(0.0, way_m * np.cos(np.maximum(0.0, aside_rad - self._ring.half_cone_rad)))
-        return sideways_m, ahead_m + SLOPE * sideways_m
+        aside_rad = np.abs(np.remainder(np.arctan2(dy, dx) - after[2] + np.pi, 2.0 * np.pi) - np.pi)
+        edge_rad = np.minimum(aside_rad + self._ring.half_cone_rad, WIDEST_RAD)
+        known: Array = np.where((edge_rad < WIDEST_RAD) | (way_m < STANDING_M / ROUNDS), SLANT * way_m / np.cos(edge_rad), np.inf)
+        return known
 
 
 NOTHING: Array = np.zeros((0, 3))

@@ -167,23 +167,17 @@ def towards(now: float, wanted: float, faster: float, slower: float) -> float:
 def rim_of(outline: Outline, corners_m: tuple[tuple[float, float], ...]) -> Array:
     """(m, 4) points x, y of the outline with their outward normals, at most 0.7 cells apart, so that none of their steps leaps over a cell.
 
-    The corners come again with the directions between the normals of their two edges.
+    A corner comes again with directions between the normals of its two edges.
     """
-    rows = _fans(outline)
-    for nx, ny, c in outline.planes.tolist():
+    planes = outline.planes.tolist()
+    rows = []
+    for (nx, ny, c), (mx, my, _) in zip(planes, planes[1:] + planes[:1], strict=True):
         on_edge = [-ny * x + nx * y for x, y in corners_m if abs(nx * x + ny * y - c) < 1e-6]
         first, last = min(on_edge), max(on_edge)
         n = max(2, math.ceil((last - first) / (0.7 * CELL_M)) + 1)
         rows += [(nx * c - ny * along, ny * c + nx * along, nx, ny) for along in np.linspace(first, last, n).tolist()]
+        corner, normal_rad = rows[-1][:2], math.atan2(ny, nx)
+        bend_rad = math.atan2(nx * my - ny * mx, nx * mx + ny * my)
+        steps = math.ceil(bend_rad / FAN_RAD)
+        rows += [(*corner, math.cos(normal_rad + bend_rad * k / steps), math.sin(normal_rad + bend_rad * k / steps)) for k in range(1, steps)]
     return np.array(rows)
-
-
-def _fans(outline: Outline) -> list[tuple[float, float, float, float]]:
-    planes = outline.planes.tolist()
-    rows = []
-    for (nx, ny, c), (mx, my, d) in zip(planes, planes[1:] + planes[:1], strict=True):
-        x, y = np.linalg.solve([[nx, ny], [mx, my]], [c, d]).tolist()
-        first, bend = math.atan2(ny, nx), math.atan2(nx * my - ny * mx, nx * mx + ny * my)
-        n = math.ceil(bend / FAN_RAD)
-        rows += [(x, y, math.cos(first + bend * k / n), math.sin(first + bend * k / n)) for k in range(1, n)]
-    return rows

@@ -81,7 +81,7 @@ class WalkerWatch:
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
         """(n, 3) x m, y m and how far beside that he may be: who comes nearer, as `Approach` hears it."""
-        self._meet([Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, SURE) for x, y, unsure_m in places.tolist()])
+        self._meet([Walker(x, y, 0.0, 0.0, unsure_m, stamp_s) for x, y, unsure_m in places.tolist()])
 
     def rows(self, now_s: float) -> Array:
         """(n, ROW) of all who are known about."""
