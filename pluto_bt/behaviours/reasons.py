@@ -54,6 +54,7 @@ REASONS: Final[dict[str, Reason]] = {
     "tilted": Reason("the robot leans farther than the platform allows", "bring it to level ground"),
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
+    "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
 
