@@ -118,7 +118,7 @@ class Obstacles:
         bearing = np.arctan2(c * dy - s * dx, c * dx + s * dy)
         last_rad = scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
         outside = (bearing < scan.angle_min_rad + FIELD_EDGE_RAD) | (bearing > last_rad - FIELD_EDGE_RAD)
-        memory_s = np.where((old[:, VX] == 0.0) & (old[:, VY] == 0.0), p.memory_s, p.walker_memory_s)
+        memory_s = np.where(old[:, MARGIN] == p.margin_m, p.memory_s, p.walker_memory_s)  # who walks may be seen before his pace is known
         self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < p.reach_m + 1.0)]
 
 
