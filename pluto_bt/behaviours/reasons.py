@@ -58,12 +58,13 @@ REASONS: Final[dict[str, Reason]] = {
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
     "wall-lost": Reason("the wall that was followed is not there any more", "look what became of it, then start again near a wall"),
+    "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
 
 WAITING: Final[dict[str, float]] = {
     # word → seconds for which a motion leaf lets the chain wait before it fails with that word
-    "bumper": 1.0,
+    "bumper": 4.0,  # who bumped into the robot goes on
     "laser-fatal": 30.0,  # the reboot takes about 20 s
     "laser-stale": 5.0,
     "sonar-stale": 5.0,

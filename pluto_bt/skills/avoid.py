@@ -37,7 +37,8 @@ LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean th
 class AvoidSenses(NamedTuple):
     """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
 
-    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force.
+    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force,
+    `waits_for_walker`: the stop filter holds the robot back because of somebody.
     """
 
     pose: Planar | None
@@ -46,6 +47,7 @@ class AvoidSenses(NamedTuple):
     twist: Twist = STILL
     view: ScanView | None = None
     sonar: SonarState | None = None
+    waits_for_walker: bool = False
 
 
 class Avoid:
@@ -161,6 +163,8 @@ class Avoid:
             self.verdict = kept(self.verdict, fault)
             self._goto.pause(now_s, dt_s)
             return self._post(0, 0.0, STILL, now_s)
+        if senses.waits_for_walker:
+            self._goto.pause(now_s, dt_s)
         points = self._points(now_s, senses.dead, avoidance)
         way = self._goto.step(now_s, senses.pose, senses.dead, points)
         self.goto_status = way.status
@@ -182,6 +186,8 @@ class Avoid:
             self.verdict = kept(self.verdict, fault)
             self._wall.pause(dt_s)
             return self._rest(now_s)
+        if senses.waits_for_walker:
+            self._wall.pause(dt_s)
         points = self._points(now_s, senses.dead, avoidance)
         along = self._wall.step(now_s, senses.dead, points, self.sight.scan_s)
         if along.status is not WallStatus.FOLLOWING:
