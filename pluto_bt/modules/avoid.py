@@ -15,6 +15,7 @@ from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
 
@@ -33,7 +34,7 @@ class Avoid:
         self._drive_status, self._drive_command = below(context, "drive")
         self._pose, self._dead = newest(context, "Localization/Pose"), newest(context, DEAD_RECKONING)
         self._raw, self._sonar = newest(context, "ATRV2/Drive/Raw"), newest(context, "ATRV2/Sonar")
-        self._scan = newest(context, "sick/scan")
+        self._scan, self._check = newest(context, "sick/scan"), newest(context, "Localization/Check")
         self._view: ScanView | None = None
         self._sent: ActuatorState | None = None
 
@@ -90,7 +91,9 @@ class Avoid:
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
-        return AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
+        check: FVectorState | None = self._check()
+        lost = Verdict(reason=check.reason, text=check.text) if check is not None and check.reason in (reasons.LOST, reasons.NO_POSE) else ALL_WELL
+        return AvoidSenses(pose if lost == ALL_WELL else None, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), lost)
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

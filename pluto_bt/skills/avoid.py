@@ -37,7 +37,8 @@ LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean th
 class AvoidSenses(NamedTuple):
     """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
 
-    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force.
+    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force; `lost`: why `pose`
+    must not be believed.
     """
 
     pose: Planar | None
@@ -46,6 +47,7 @@ class AvoidSenses(NamedTuple):
     twist: Twist = STILL
     view: ScanView | None = None
     sonar: SonarState | None = None
+    lost: Verdict = ALL_WELL
 
 
 class Avoid:
@@ -131,7 +133,7 @@ class Avoid:
         if kind is CommandType.VELOCITY:
             twist = within(self.command.velocity, self._limits)
         elif senses.pose is None or raw_rad is None:
-            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading is commanded, and nobody knows where the robot points"))
+            self.verdict = kept(self.verdict, _no_pose(senses, "a heading is commanded, and nobody knows where the robot points"))
             return self._post(0, 0.0, STILL, self._order_s)
         else:
             heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
@@ -198,7 +200,7 @@ class Avoid:
     def _goto_fault(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance) -> Verdict:
         """Why goto cannot know where to go."""
         if senses.pose is None or senses.dead is None or senses.raw_heading_rad is None:
-            return Verdict(reason=reasons.NO_POSE, text="goto waits until it is known where the robot is")
+            return _no_pose(senses, "goto waits until it is known where the robot is")
         fault = self.sight.laser_fault(now_s) if avoidance & Avoidance.LASER else ALL_WELL
         if fault == ALL_WELL and avoidance & Avoidance.SONAR:
             fault = self.sight.sonar_fault(now_s)
@@ -243,6 +245,10 @@ class Avoid:
         x_m, y_m = points[which, :2].tolist()
         text = f"obstacle {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
         return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, text)
+
+
+def _no_pose(senses: AvoidSenses, text: str) -> Verdict:
+    return senses.lost if senses.lost != ALL_WELL else Verdict(reason=reasons.NO_POSE, text=text)
 
 
 def _differs(a: Twist, b: Twist) -> bool:

@@ -1,0 +1,84 @@
+"""What wheels and heading sensor said of the last seconds, summed up, so that it can be compared with what a laser saw between two scans."""
+
+from __future__ import annotations
+
+import bisect
+from collections import deque
+from typing import NamedTuple
+
+from estimation.se2 import IDENTITY, Pose2, arc, between, blend, compose
+
+
+class Sums(NamedTuple):
+    """Everything since the start, at one stamp.
+
+    Attributes:
+        pose: reckoned as localisation does, without what is made up for later.
+        wheels_m, wheels_rad: way and turn as the wheels have them. turn_rad: as the heading's source has it. measured_s: so long it was a sensor.
+    """
+
+    stamp_s: float
+    pose: Pose2 = IDENTITY
+    wheels_m: float = 0.0
+    wheels_rad: float = 0.0
+    turn_rad: float = 0.0
+    measured_s: float = 0.0
+
+
+class Motion(NamedTuple):
+    """What happened between two stamps; `pose`: the end seen from the beginning."""
+
+    pose: Pose2
+    time_s: float
+    wheels_m: float
+    wheels_rad: float
+    turn_rad: float
+    measured_s: float
+
+    @property
+    def is_measured(self) -> bool:
+        """True if the turn is that of a sensor, not of the wheels."""
+        return self.measured_s > 0.5 * self.time_s
+
+
+class Reckoning:
+    """The sums at each step of the last seconds."""
+
+    def __init__(self, moments: int = 256) -> None:
+        self._moments: deque[Sums] = deque([Sums(0.0)], maxlen=moments)
+
+    @property
+    def now_s(self) -> float:
+        """The newest stamp."""
+        return self._moments[-1].stamp_s
+
+    def add(self, stamp_s: float, dt_s: float, way_m: float, turn_rad: float, wheels: tuple[float, float, float], is_measured: bool) -> None:
+        """One step: way and turn as reckoned; `wheels`: way and turn of the wheels, and the turn before any correction."""
+        last = self._moments[-1]
+        pose = last.pose if way_m == turn_rad == 0.0 else compose(last.pose, arc(way_m, turn_rad))
+        measured_s = last.measured_s + (dt_s if is_measured else 0.0)
+        self._moments.append(Sums(stamp_s, pose, last.wheels_m + wheels[0], last.wheels_rad + wheels[1], last.turn_rad + wheels[2], measured_s))
+
+    def between(self, since_s: float, until_s: float) -> Motion | None:
+        """The motion between two stamps; None if one is not remembered."""
+        a, b = self._at(since_s), self._at(until_s)
+        if a is None or b is None:
+            return None
+        sums = (y - x for x, y in zip(a[2:], b[2:], strict=True))
+        return Motion(between(a.pose, b.pose), until_s - since_s, *sums)
+
+    def _at(self, stamp_s: float) -> Sums | None:
+        i = bisect.bisect_left(self._moments, stamp_s, key=_stamp)
+        if i == len(self._moments) or (i == 0 and self._moments[0].stamp_s != stamp_s):
+            return None
+        after = self._moments[i]
+        if after.stamp_s == stamp_s:
+            return after
+        before = self._moments[i - 1]
+        share = (stamp_s - before.stamp_s) / (after.stamp_s - before.stamp_s)
+        sums = (x + share * (y - x) for x, y in zip(before[2:], after[2:], strict=True))
+        return Sums(stamp_s, blend(before.pose, after.pose, share), *sums)
+
+
+def _stamp(moment: Sums) -> float:
+    return moment.stamp_s

@@ -1,0 +1,70 @@
+"""The cross-check of gyro, wheels and laser as part of `local`: feeds it level scans, tells its findings, shows it in `Localization/Check`."""
+
+from __future__ import annotations
+
+import math
+
+from estimation.motion_check import LOST, WHEELS_GRIP, MotionCheck
+from estimation.track import Tilt
+from pluto_bt.blackboard.messages import FVectorState, LaserScan
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.laser_poses import Arm
+from pluto_bt.skills.reasons import NO_POSE
+
+LEVEL_RAD = math.radians(2.0)  # a scan from a wrist or a robot that leans more also sees the ground
+FINE = (1.0, 0.0, True, False, False)
+AGREED, CORRECTED, IS_LOST = 0, 1, 2  # element[0] of the topic
+SETTLING = "the heading was wrong and is being put right"
+MOST_PAN_RAD = 0.15  # from scan to scan: while the wrist moves faster its angle is not exact enough
+
+
+class MotionCheckShown:
+    """`Localization/Check` on each change: element[0] 0 the witnesses agree, 1 one is corrected, 2 lost; data = grip, drift rad/s, fit."""
+
+    def __init__(self, context: Context, check: MotionCheck) -> None:
+        self._check, self._say = check, context.say
+        self._scan = context.board.reader("sick/scan")
+        self._topic = context.board.publisher("Localization/Check", "local")
+        self._word = self._text = self._lost_text = ""
+        self._pan_rad = 0.0
+        self._shown: tuple[float, float, bool, bool, bool] | None = None
+
+    def look(self, stamp_s: float, arm: Arm, tilt: Tilt) -> None:
+        """Give the scan of that stamp to the check, if it is level."""
+        sample = self._scan()
+        if sample is None or not isinstance(sample.value, LaserScan) or sample.value.stamp_s != stamp_s:
+            return
+        scan = sample.value
+        panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
+        if max(abs(arm.tilt_rad), abs(tilt[0]), abs(tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
+            self._check.blind()
+            return
+        x, y = arm.pose_robot_laser[:2]
+        self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))
+
+    def found(self, now_s: float) -> None:
+        """Somebody has posted where the robot is."""
+        if self._check.lost:
+            self._say("info", "found", "local", "a pose was posted: the robot is not lost any more")
+        self._check.found()
+
+    def tell(self, now_s: float) -> None:
+        """Findings to the events, the state to the topic."""
+        check = self._check
+        for word, text in check.news:
+            level = "error" if word == LOST else "info" if word == WHEELS_GRIP else "warning"
+            self._say(level, word, "local", text)
+            self._word, self._text = word, text
+            self._lost_text = text if word == LOST else self._lost_text
+        check.news.clear()
+        state = (check.grip, check.drift_radps, check.trusts_gyro, check.lost, check.is_settling)
+        if state == self._shown:
+            return
+        self._shown = state
+        code = IS_LOST if check.lost else AGREED if state == FINE else CORRECTED
+        word, text = (self._word, self._text) if code != AGREED else ("", "")
+        if check.lost:
+            word, text = LOST, self._lost_text
+        elif check.is_settling:
+            word, text = NO_POSE, SETTLING
+        self._topic.put(FVectorState(now_s, (check.grip, check.drift_radps, check.fits), (code,), word, text), now_s)
