@@ -14,7 +14,7 @@ class Sums(NamedTuple):
 
     Attributes:
         pose: reckoned as localisation does, without what is made up for later.
-        wheels_m, wheels_rad: way and turn as the wheels have them. turn_rad: as the heading's source has it. measured_s: so long it was a sensor.
+        wheels_m, wheels_rad: way and turn as the wheels have them. turn_rad: as reckoned. measured_s: so long it was a sensor's.
     """
 
     stamp_s: float
@@ -26,8 +26,9 @@ class Sums(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """What happened between two stamps; `pose`: the end seen from the beginning."""
+    """What happened until a stamp, within `time_s`; `pose`: the end seen from the beginning."""
 
+    until_s: float
     pose: Pose2
     time_s: float
     wheels_m: float
@@ -52,12 +53,12 @@ class Reckoning:
         """The newest stamp."""
         return self._moments[-1].stamp_s
 
-    def add(self, stamp_s: float, dt_s: float, way_m: float, turn_rad: float, wheels: tuple[float, float, float], is_measured: bool) -> None:
-        """One step: way and turn as reckoned; `wheels`: way and turn of the wheels, and the turn before any correction."""
+    def add(self, stamp_s: float, dt_s: float, way_m: float, turn_rad: float, wheels: tuple[float, float], is_measured: bool) -> None:
+        """One step: way and turn as reckoned; `wheels`: way and turn as the wheels have them."""
         last = self._moments[-1]
         pose = last.pose if way_m == turn_rad == 0.0 else compose(last.pose, arc(way_m, turn_rad))
         measured_s = last.measured_s + (dt_s if is_measured else 0.0)
-        self._moments.append(Sums(stamp_s, pose, last.wheels_m + wheels[0], last.wheels_rad + wheels[1], last.turn_rad + wheels[2], measured_s))
+        self._moments.append(Sums(stamp_s, pose, last.wheels_m + wheels[0], last.wheels_rad + wheels[1], last.turn_rad + turn_rad, measured_s))
 
     def between(self, since_s: float, until_s: float) -> Motion | None:
         """The motion between two stamps; None if one is not remembered."""
@@ -65,7 +66,7 @@ class Reckoning:
         if a is None or b is None:
             return None
         sums = (y - x for x, y in zip(a[2:], b[2:], strict=True))
-        return Motion(between(a.pose, b.pose), until_s - since_s, *sums)
+        return Motion(until_s, between(a.pose, b.pose), until_s - since_s, *sums)
 
     def _at(self, stamp_s: float) -> Sums | None:
         i = bisect.bisect_left(self._moments, stamp_s, key=_stamp)
@@ -78,6 +79,11 @@ class Reckoning:
         share = (stamp_s - before.stamp_s) / (after.stamp_s - before.stamp_s)
         sums = (x + share * (y - x) for x, y in zip(before[2:], after[2:], strict=True))
         return Sums(stamp_s, blend(before.pose, after.pose, share), *sums)
+
+
+def together(motions: list[Motion]) -> Motion:
+    """Several as one, their poses left out."""
+    return Motion(motions[-1].until_s, IDENTITY, *(sum(values) for values in zip(*(motion[2:] for motion in motions), strict=True)))
 
 
 def _stamp(moment: Sums) -> float:

@@ -35,7 +35,7 @@ REASONS: Final[dict[str, Reason]] = {
     "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it"),
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
-    "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose (Localization/Post_Pose), then go on"),
+    "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose, then go on"),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
     "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object"),
     "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map"),

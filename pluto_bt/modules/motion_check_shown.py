@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from estimation.motion_check import LOST, WHEELS_GRIP, MotionCheck
+from estimation.motion_check import MotionCheck
+from estimation.news import LOST, WHEELS_GRIP
 from estimation.track import Tilt
 from pluto_bt.blackboard.messages import FVectorState, LaserScan
 from pluto_bt.modules.context import Context
@@ -57,7 +58,7 @@ class MotionCheckShown:
             self._word, self._text = word, text
             self._lost_text = text if word == LOST else self._lost_text
         check.news.clear()
-        state = (check.grip, check.drift_radps, check.trusts_gyro, check.lost, check.is_settling)
+        state = (check.way.grip, check.turn.drift_radps, check.turn.trusts_gyro, check.lost, check.turn.is_settling)
         if state == self._shown:
             return
         self._shown = state
@@ -65,6 +66,6 @@ class MotionCheckShown:
         word, text = (self._word, self._text) if code != AGREED else ("", "")
         if check.lost:
             word, text = LOST, self._lost_text
-        elif check.is_settling:
+        elif check.turn.is_settling:
             word, text = NO_POSE, SETTLING
-        self._topic.put(FVectorState(now_s, (check.grip, check.drift_radps, check.fits), (code,), word, text), now_s)
+        self._topic.put(FVectorState(now_s, (state[0], state[1], check.fits), (code,), word, text), now_s)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from estimation.covariance import StepNoise
 from estimation.heading import AbsoluteHeading, GyroHeading, HeadingSource, WheelHeading
-from estimation.motion_check import MotionCheck
+from estimation.motion_check import Limits, MotionCheck
 from estimation.odometer import Odometer, SignedSpeed
 from estimation.se2 import Pose2, arc
 from estimation.track import LEVEL, Tilt
@@ -92,10 +92,8 @@ class MotionSources:
             self._heading = WheelHeading()
         laser = devices.laser
         limits = context.platform.limits
-        self.check = MotionCheck(
-            laser.max_range_m if laser is not None else 0.0, limits.max_speed_mps, math.radians(limits.max_turn_rate_dps),
-            wheels_know_turns=not is_car, has_gyro=has_gyro, judges_turns=yaw_enable,
-        )  # fmt: skip
+        able = Limits(limits.max_speed_mps, math.radians(limits.max_turn_rate_dps), laser.max_range_m if laser is not None else 0.0)
+        self.check = MotionCheck(able, wheels_know_turns=not is_car, has_gyro=has_gyro, judges_turns=yaw_enable)
         self._bias_radps = 0.0
         self._sensor = context.board.reader(topic)
         self._stale_after_s = STALE_AFTER_S[topic]
@@ -123,7 +121,7 @@ class MotionSources:
             return None, False, LEVEL
         state = sample.value
         if state.bias_radps != self._bias_radps:
-            self.check.bias_moved(state.bias_radps - self._bias_radps)
+            self.check.turn.bias_moved(state.bias_radps - self._bias_radps)
             self._bias_radps = state.bias_radps
         theta_rad = state.theta_rad + state.turn_rates_radps[2] * (stamp_s - state.stamp_s)
         return theta_rad, state.bias_known, (state.phi_rad, state.psi_rad)
