@@ -13,7 +13,9 @@ import math
 class GyroRest:
     """Attributes: `bias_radps`; `jumped`: the last judgement found another bias, not only a better figure of the same."""
 
-    __slots__ = ("_doubted_rad", "_held_rad", "_max_spread_radps", "_mean", "_memory", "_owed_rad", "_squares", "_still_s", "_taken", "bias_radps", "jumped")
+    __slots__ = (
+        "_doubted_rad", "_held_rad", "_max_spread_radps", "_mean", "_memory", "_owed_rad", "_squares", "_still_s", "_taken", "bias_radps", "jumped",
+    )  # fmt: skip
 
     SETTLE_S = 0.3  # after the wheels have come to rest: motors' lag and filter die away
     JUDGED, LEAST = 50, 10  # samples: judged after so many; fewer than the least say nothing

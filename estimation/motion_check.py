@@ -67,6 +67,7 @@ class MotionCheck:
         self._is_elsewhere = False
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._alone_s = self._since_s = -math.inf
+        self._looked_s = self._suspected_s = -math.inf  # stamps of the last scan, and of the last that told of a wrong way
 
     # ---------------------------------------------------------------- steps
 
@@ -111,6 +112,7 @@ class MotionCheck:
         self.fits = match.fits
         if match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
             self._weigh(scan, key, motion, match)
+            self._looked_s = stamp_s
             return
         both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
         is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
@@ -147,10 +149,12 @@ class MotionCheck:
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
         off_m, aside_m, off_rad = _difference(motion.pose, seen)
         gain = match.fits - match.fits_as_guessed
-        if self._is_carried(motion, off_m, aside_m) and gain > LEAST_GAIN:
-            self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
-            self._renew(scan)
+        if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
+            if self._is_confirmed(scan.stamp_s):
+                self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
+                self._renew(scan)
             return
+        self._last = (motion.time_s, off_m)
         lag_s = self._reckoning.now_s - scan.stamp_s
         if self._judges_turns and self.turn.weigh(scan.stamp_s, off_rad, SIGMAS * match.sigma_theta_rad, motion, lag_s):
             self._key, self._since_s = None, self._reckoning.now_s
@@ -158,6 +162,8 @@ class MotionCheck:
         sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
         x, y, turn_rad = motion.pose
         is_far = math.hypot(x, y) > KEY_WAY_M or abs(turn_rad) > KEY_TURN_RAD or motion.time_s > KEY_S
+        if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(scan.stamp_s):
+            return
         if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or is_far:
             self.turn.keep(scan.stamp_s, off_rad, motion)
             self._renew(scan)
@@ -165,9 +171,14 @@ class MotionCheck:
     def _is_carried(self, motion: Motion, off_m: float, aside_m: float) -> bool:
         """True if the difference came at once, or sideways: then somebody moved the robot."""
         last_s, last_m = self._last
-        self._last = (motion.time_s, off_m)
         most_m = FASTER * self._limits.speed_mps * (motion.time_s - last_s) + SUDDEN_M
         return abs(off_m - last_m) > most_m or abs(aside_m) > ASIDE_M
+
+    def _is_confirmed(self, stamp_s: float) -> bool:
+        """True for the second scan in a row that says so: what walks past the laser moves on."""
+        is_second = self._suspected_s > -math.inf and self._suspected_s == self._looked_s
+        self._suspected_s = stamp_s
+        return is_second
 
     def _lose(self, text: str) -> None:
         self._is_elsewhere = False

@@ -18,6 +18,7 @@ from pluto_bt.maps.kernel import kernel
 
 Array = NDArray[np.float64]
 
+NEAR_M = 0.8  # nearer points are not asked: somebody who stands there would fill half of the scan
 STRIDE = 3  # every third beam of the new scan is enough
 ROUNDS = 10
 SETTLED_M, SETTLED_RAD = 5e-4, 1e-4  # a smaller step is the last
@@ -25,6 +26,8 @@ NEIGHBOURS = 10  # beams to each side among which the nearest point is looked fo
 REACH_M, LEAST_REACH_M, NARROWING = 0.5, 0.1, 0.6  # how far a point may lie from its line: in the first round, at last, from round to round
 SOFT_M = 0.03  # a point so far off its line counts half: three times the noise of an LMS200
 NOISE_M = 0.015  # of one range: noise and centimetre steps
+BASE_M, MOST_BASE = 0.3, 8  # a line is drawn through neighbours so far apart: with nearer ones their noise would turn it
+SPURIOUS = 4.0 * 2.0 * (0.01 / BASE_M) ** 2  # what noise in such a line tells of a motion along it, four times over: as much is not believed
 JOINED = 0.15  # neighbours whose ranges differ by a larger share lie on different things
 PRIOR_M, PRIOR_RAD = 0.3, 0.2  # how far off the guess may be; what the scans cannot see stays as guessed
 FITS_M = 0.05  # a point so near its line is explained
@@ -57,7 +60,7 @@ def match_scans(before_m: Array, now_m: Array, first_rad: float, step_rad: float
     """The motion of the laser from one scan to the next.
 
     Args:
-        before_m, now_m: (n,) ranges of the same beams; what is not between 0 and `max_range_m` says nothing.
+        before_m, now_m: (n,) ranges of the same beams; what is not between 0 and `max_range_m` says nothing, and what is very near neither.
         first_rad, step_rad: direction of the first beam, and between two.
         guess: the new laser pose seen from the old one.
     Raises: ValueError if the scans are not of one shape.
@@ -84,13 +87,13 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
     for round_ in range(ROUNDS + 1):
         is_last = is_settled or round_ == ROUNDS
         c, s = math.cos(theta), math.sin(theta)
-        weight_x, weight_t = (NOISE_M / PRIOR_M) ** 2, (NOISE_M / PRIOR_RAD) ** 2
-        axx, ayy, att, axy, axt, ayt = weight_x, weight_x, weight_t, 0.0, 0.0, 0.0
-        bx, by, bt = weight_x * (gx - x), weight_x * (gy - y), weight_t * (gt - theta)
+        axx, ayy, att, axy, axt, ayt = 0.0, 0.0, (NOISE_M / PRIOR_RAD) ** 2, 0.0, 0.0, 0.0
+        bx, by, bt = 0.0, 0.0, (NOISE_M / PRIOR_RAD) ** 2 * (gt - theta)
+        sure = (NOISE_M / PRIOR_M) ** 2  # of the guess
         looked, fits, longer, shorter = 0, 0, 0, 0
         for i in range(0, n, STRIDE):
             r = now_m[i]
-            if not 0.0 < r < max_range_m:
+            if not NEAR_M < r < max_range_m:
                 continue
             beam_rad = first_rad + i * step_rad
             rx, ry = r * math.cos(beam_rad), r * math.sin(beam_rad)
@@ -113,8 +116,12 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
                     best, nearest = j, d2
             if best < 0:
                 continue
-            low = best - 1 if abs(before_m[best - 1] - before_m[best]) < JOINED * before_m[best] else best
-            high = best + 1 if abs(before_m[best + 1] - before_m[best]) < JOINED * before_m[best] else best
+            low, high = best, best
+            for _ in range(MOST_BASE):
+                if (px[high] - px[low]) ** 2 + (py[high] - py[low]) ** 2 > BASE_M**2:
+                    break
+                low = low - 1 if low > 0 and abs(before_m[low - 1] - before_m[low]) < JOINED * before_m[low] else low
+                high = high + 1 if high < n - 1 and abs(before_m[high + 1] - before_m[high]) < JOINED * before_m[high] else high
             tx, ty = px[high] - px[low], py[high] - py[low]
             length = math.hypot(tx, ty)
             if low == high or not length > 0.0:
@@ -124,6 +131,7 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
             if abs(off_m) < FITS_M:
                 fits += 1
             weight = 1.0 / (1.0 + (off_m / SOFT_M) ** 2)
+            sure += weight * SPURIOUS
             jt = -nx * dy + ny * dx
             axx += weight * nx * nx
             ayy += weight * ny * ny
@@ -134,6 +142,7 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
             bx -= weight * nx * off_m
             by -= weight * ny * off_m
             bt -= weight * jt * off_m
+        axx, ayy, bx, by = axx + sure, ayy + sure, bx + sure * (gx - x), by + sure * (gy - y)
         share = 1.0 / max(1, looked)
         if round_ == 0:
             out[FITTED_BEFORE] = fits * share
@@ -145,7 +154,8 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
             out[FITS], out[LONGER], out[SHORTER], out[LOOKED] = fits * share, longer * share, shorter * share, looked
             out[VAR_X], out[VAR_Y], out[VAR_THETA] = NOISE_M**2 * cxx / det, NOISE_M**2 * cyy / det, NOISE_M**2 * ctt / det
             break
-        step_x, step_y, step_t = (cxx * bx + cxy * by + cxt * bt) / det, (cxy * bx + cyy * by + cyt * bt) / det, (cxt * bx + cyt * by + ctt * bt) / det
+        step_x, step_y = (cxx * bx + cxy * by + cxt * bt) / det, (cxy * bx + cyy * by + cyt * bt) / det
+        step_t = (cxt * bx + cyt * by + ctt * bt) / det
         x, y, theta = x + step_x, y + step_y, theta + step_t
         is_settled = max(abs(step_x), abs(step_y)) < SETTLED_M and abs(step_t) < SETTLED_RAD
         reach_m = max(LEAST_REACH_M, NARROWING * reach_m)

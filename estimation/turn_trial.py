@@ -54,10 +54,12 @@ class TurnTrial:
         """
         while self._pieces and stamp_s - self._pieces[0][0] > SUM_S:
             self._pieces.popleft()
+        before_rad = sum(piece[1] for piece in self._pieces)
         if abs(off_rad) > max(LEAST_RAD, noise_rad) and self._is_alone(motion):
+            self.debt.owed += before_rad  # proved nothing till now
             self._accuse(off_rad, motion, lag_s, f"so do {motion.time_s:.1f} s of scans" if self._asks_wheels else "the laser denies it")
             return True
-        sum_rad = off_rad + sum(piece[1] for piece in self._pieces)
+        sum_rad = off_rad + before_rad
         if not self._pieces or abs(sum_rad) <= max(LEAST_OF_LIAR_RAD if self.drift_radps else LEAST_SUM_RAD, noise_rad):
             return False
         whole = together([piece[2] for piece in self._pieces] + [motion])

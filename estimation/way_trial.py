@@ -23,6 +23,10 @@ class WayTrial:
         self._news = news
         self._gripped = 0
 
+    def is_suspect(self, off_m: float, noise_m: float, gain: float, motion: Motion) -> bool:
+        """True if wheels that were believed till now would be found wrong."""
+        return self.grip == 1.0 and abs(off_m) > max(LEAST_M, SHARE * abs(motion.wheels_m), noise_m) and gain >= LEAST_GAIN
+
     def weigh(self, off_m: float, noise_m: float, gain: float, motion: Motion) -> bool:
         """True if the next comparison should begin anew.
 
@@ -33,7 +37,7 @@ class WayTrial:
         seen_m = motion.wheels_m * self.grip + off_m
         if self.grip != 1.0:
             return motion.time_s > SLIPPING_S and self._follow(off_m, seen_m, motion)
-        if abs(off_m) <= max(LEAST_M, SHARE * abs(motion.wheels_m), noise_m) or gain < LEAST_GAIN:
+        if not self.is_suspect(off_m, noise_m, gain, motion):
             return False
         self.debt.owed += off_m
         told = f"the wheels say {motion.wheels_m:.2f} m, the laser {seen_m:.2f} m in {motion.time_s:.1f} s"

@@ -19,6 +19,7 @@ from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
+CLEAR_S: Final = 2.0  # so long must the chain go without a word before its patience begins anew
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
 MOTION_INPUTS: Final = {
@@ -39,7 +40,7 @@ class MotionLeaf(Leaf):
         self._moves = False
         self._ticket: Ticket | None = None
         self._was_accepted = False
-        self._word, self._word_since_s = "", 0.0
+        self._word, self._word_since_s, self._word_seen_s = "", 0.0, -math.inf
         self._start_s = self._last_s = self._posted_s = self.now_s()
         self._timeout_s = float(self.get_input("timeout_s"))
 
@@ -139,7 +140,11 @@ class MotionLeaf(Leaf):
         return self.fail("cancelled", "another command took its place")
 
     def _patience(self, word: str, text: str) -> Status | None:
-        """Let the chain wait for a while with the same word."""
+        """Let the chain wait for a while with the same word. A moment without it is no end of it: what stops may be trying again."""
+        if word:
+            self._word_seen_s = self._last_s
+        elif self._last_s - self._word_seen_s < CLEAR_S:
+            return None
         if word != self._word:
             self._word, self._word_since_s = word, self._last_s
         if word and self._last_s - self._word_since_s >= WAITING[word]:
