@@ -65,6 +65,7 @@ class MotionCheck:
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
         self._is_elsewhere = False
+        self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._alone_s = self._since_s = -math.inf
         self._looked_s = self._suspected_s = -math.inf  # stamps of the last scan, and of the last that told of a wrong way
@@ -102,7 +103,7 @@ class MotionCheck:
     def look(self, stamp_s: float, ranges_m: Array, first_rad: float, step_rad: float, arm: Pose2) -> None:
         """Compare a level scan with the key scan. `arm`: where the laser was, seen from the robot."""
         if stamp_s < self._since_s:
-            return  # reckoned with what is known to be wrong
+            return  # taken before the last finding: what was reckoned then is known to be wrong, and owed
         scan, key = KeyScan(stamp_s, ranges_m, arm), self._key
         motion = self._reckoning.between(key.stamp_s, stamp_s) if key is not None else None
         if key is None or motion is None or not 0.0 < motion.time_s <= 2.0 * KEY_S or len(ranges_m) != len(key.ranges_m):
@@ -148,6 +149,7 @@ class MotionCheck:
             return
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
         off_m, aside_m, off_rad = _difference(motion.pose, seen)
+        off_rad -= self._counted_rad
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(scan.stamp_s):
@@ -157,7 +159,8 @@ class MotionCheck:
         self._last = (motion.time_s, off_m)
         lag_s = self._reckoning.now_s - scan.stamp_s
         if self._judges_turns and self.turn.weigh(scan.stamp_s, off_rad, SIGMAS * match.sigma_theta_rad, motion, lag_s):
-            self._key, self._since_s = None, self._reckoning.now_s
+            self._renew(scan)
+            self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
             return
         sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
         x, y, turn_rad = motion.pose
@@ -187,7 +190,7 @@ class MotionCheck:
             self.news.append(News(LOST, text))
 
     def _renew(self, scan: KeyScan) -> None:
-        self._key, self._last = scan, (0.0, 0.0)
+        self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
 
 
 def _difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:

@@ -25,11 +25,14 @@ MAKE_UP_RADPS, SETTLING_RAD = 1.0, 0.3
 
 
 class TurnTrial:
-    """Attributes: `drift_radps` is taken off the sensor's turn; `trusts_gyro`: False = the wheels stand in; `debt`: turn still owed, rad."""
+    """Attributes: `drift_radps` is taken off the sensor's turn; `trusts_gyro`: False = the wheels stand in; `debt`: turn still owed, rad;
+    `lag_rad`: the part of the last finding that is for the time since its scan.
+    """
 
     def __init__(self, news: list[News], asks_wheels: bool) -> None:
         self.drift_radps, self.trusts_gyro = 0.0, True
         self.debt = Debt(MAKE_UP_RADPS)
+        self.lag_rad = 0.0
         self._news, self._asks_wheels = news, asks_wheels
         self._pieces: deque[tuple[float, float, Motion]] = deque()  # stamp s, laser's turn − reckoned turn, motion: the last comparisons
         self._strikes: deque[float] = deque(maxlen=STRIKES)
@@ -103,7 +106,8 @@ class TurnTrial:
         """Make up for the turn, and take the drift off from now on."""
         self._pieces.clear()
         by_radps = -off_rad / motion.time_s if motion.is_measured else 0.0  # wheels are wrong by a share, which is no drift
-        self.debt.owed = math.remainder(self.debt.owed + off_rad - by_radps * lag_s, math.tau)
+        self.lag_rad = -by_radps * lag_s
+        self.debt.owed = math.remainder(self.debt.owed + off_rad + self.lag_rad, math.tau)
         if not motion.is_measured:
             return
         self.drift_radps += by_radps
