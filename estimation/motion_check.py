@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimation.news import LOST, News
-from estimation.reckoning import Motion, Reckoning
+from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep, match_scans
 from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
 from estimation.turn_trial import TurnTrial
@@ -22,12 +22,14 @@ from estimation.way_trial import WayTrial
 
 Array = NDArray[np.float64]
 
+LEAST_BEAMS = 0.75  # of a scan must be numbers
 GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
 KEY_WAY_M, KEY_TURN_RAD, KEY_S = 1.0, 0.5, 3.0  # a scan is compared with until the robot has moved on so far
+LONGEST_GAP_S = 60.0  # without usable scans: later the place may look different
 ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
 
 
@@ -42,7 +44,7 @@ class Limits(NamedTuple):
 class KeyScan(NamedTuple):
     """The scan that others are compared with; `arm`: the laser seen from the robot."""
 
-    stamp_s: float
+    at: Sums
     ranges_m: Array
     arm: Pose2
 
@@ -67,7 +69,8 @@ class MotionCheck:
         self._is_elsewhere = False
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
-        self._matched_s = self._alone_s = self._since_s = -math.inf
+        self._matched_s = self._since_s = -math.inf
+        self._alone: Sums | None = None  # since then the gyro is watched by the wheels
         self._looked_s = self._suspected_s = -math.inf  # stamps of the last scan, and of the last that told of a wrong way
 
     # ---------------------------------------------------------------- steps
@@ -79,7 +82,7 @@ class MotionCheck:
         reckoned_m = way_m * self.way.grip
         reckoned_rad, is_measured = self.turn.reckoned(dt_s, wheel_turn_rad, turn_rad, is_measured)
         self._reckoning.add(stamp_s, dt_s, reckoned_m, reckoned_rad, (way_m, wheel_turn_rad), is_measured)
-        if self._has_gyro and self._asks_wheels and stamp_s - self._alone_s >= ALONE_S:
+        if self._has_gyro and self._asks_wheels and (self._alone is None or stamp_s - self._alone.stamp_s >= ALONE_S):
             self._judge_without_laser(stamp_s)
         return reckoned_m + self.way.debt.pay(dt_s), reckoned_rad + self.turn.debt.pay(dt_s)
 
@@ -93,10 +96,10 @@ class MotionCheck:
             self._lose(f"{why}, and nothing else tells where the robot points")
 
     def _judge_without_laser(self, stamp_s: float) -> None:
-        motion = self._reckoning.between(self._alone_s, stamp_s) if self._alone_s > -math.inf else None
-        self._alone_s = stamp_s
-        if motion is not None and stamp_s - self._matched_s > BLIND_S and motion.time_s < 2.0 * ALONE_S:
-            self.turn.weigh_alone(motion)
+        before, now = self._alone, self._reckoning.at(stamp_s)
+        self._alone = now
+        if before is not None and now is not None and stamp_s - self._matched_s > BLIND_S and stamp_s - before.stamp_s < 2.0 * ALONE_S:
+            self.turn.weigh_alone(motion_between(before, now))
 
     # ---------------------------------------------------------------- scans
 
@@ -104,9 +107,16 @@ class MotionCheck:
         """Compare a level scan with the key scan. `arm`: where the laser was, seen from the robot."""
         if stamp_s < self._since_s:
             return  # taken before the last finding: what was reckoned then is known to be wrong, and owed
-        scan, key = KeyScan(stamp_s, ranges_m, arm), self._key
-        motion = self._reckoning.between(key.stamp_s, stamp_s) if key is not None else None
-        if key is None or motion is None or not 0.0 < motion.time_s <= 2.0 * KEY_S or len(ranges_m) != len(key.ranges_m):
+        at, key = self._reckoning.at(stamp_s), self._key
+        if at is None or np.count_nonzero(ranges_m > 0.0) < LEAST_BEAMS * len(ranges_m):
+            self.blind()
+            return
+        scan = KeyScan(at, ranges_m, arm)
+        if key is None or len(ranges_m) != len(key.ranges_m):
+            self._renew(scan)
+            return
+        motion = motion_between(key.at, at)
+        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
             self._renew(scan)
             return
         match = self._best_match(key, scan, motion, first_rad, step_rad)
@@ -121,8 +131,8 @@ class MotionCheck:
         self._renew(scan)
 
     def blind(self) -> None:
-        """A scan came that cannot be compared: the next one begins anew."""
-        self._key, self._is_elsewhere = None, False
+        """A scan came that cannot be compared: the next one is compared with the one before."""
+        self._is_elsewhere = False
 
     def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
         """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
@@ -142,7 +152,7 @@ class MotionCheck:
 
     def _weigh(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
         """A good match: does it tell of the motion that was reckoned?"""
-        self._matched_s = scan.stamp_s
+        stamp_s = self._matched_s = scan.at.stamp_s
         if self._is_elsewhere:
             self._lose("the laser sees another place than a moment ago, where neither wheels nor gyro can have brought the robot")
             self._renew(scan)
@@ -152,23 +162,21 @@ class MotionCheck:
         off_rad -= self._counted_rad
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
-            if self._is_confirmed(scan.stamp_s):
+            if self._is_confirmed(stamp_s):
                 self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
                 self._renew(scan)
             return
         self._last = (motion.time_s, off_m)
-        lag_s = self._reckoning.now_s - scan.stamp_s
-        if self._judges_turns and self.turn.weigh(scan.stamp_s, off_rad, SIGMAS * match.sigma_theta_rad, motion, lag_s):
+        lag_s = self._reckoning.now_s - stamp_s
+        if self._judges_turns and self.turn.weigh(stamp_s, off_rad, SIGMAS * match.sigma_theta_rad, motion, lag_s):
             self._renew(scan)
             self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
             return
         sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
-        x, y, turn_rad = motion.pose
-        is_far = math.hypot(x, y) > KEY_WAY_M or abs(turn_rad) > KEY_TURN_RAD or motion.time_s > KEY_S
-        if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(scan.stamp_s):
+        if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
             return
-        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or is_far:
-            self.turn.keep(scan.stamp_s, off_rad, motion)
+        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
+            self.turn.keep(stamp_s, off_rad, motion)
             self._renew(scan)
 
     def _is_carried(self, motion: Motion, off_m: float, aside_m: float) -> bool:
@@ -191,6 +199,11 @@ class MotionCheck:
 
     def _renew(self, scan: KeyScan) -> None:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
+
+
+def _is_far(pose: Pose2, times: float) -> bool:
+    """True if so many times the way or turn lies between two scans after which another key scan is taken."""
+    return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD
 
 
 def _difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:

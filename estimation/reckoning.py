@@ -60,15 +60,8 @@ class Reckoning:
         measured_s = last.measured_s + (dt_s if is_measured else 0.0)
         self._moments.append(Sums(stamp_s, pose, last.wheels_m + wheels[0], last.wheels_rad + wheels[1], last.turn_rad + turn_rad, measured_s))
 
-    def between(self, since_s: float, until_s: float) -> Motion | None:
-        """The motion between two stamps; None if one is not remembered."""
-        a, b = self._at(since_s), self._at(until_s)
-        if a is None or b is None:
-            return None
-        sums = (y - x for x, y in zip(a[2:], b[2:], strict=True))
-        return Motion(until_s, between(a.pose, b.pose), until_s - since_s, *sums)
-
-    def _at(self, stamp_s: float) -> Sums | None:
+    def at(self, stamp_s: float) -> Sums | None:
+        """The sums at a stamp; None if it is not remembered."""
         i = bisect.bisect_left(self._moments, stamp_s, key=_stamp)
         if i == len(self._moments) or (i == 0 and self._moments[0].stamp_s != stamp_s):
             return None
@@ -79,6 +72,12 @@ class Reckoning:
         share = (stamp_s - before.stamp_s) / (after.stamp_s - before.stamp_s)
         sums = (x + share * (y - x) for x, y in zip(before[2:], after[2:], strict=True))
         return Sums(stamp_s, blend(before.pose, after.pose, share), *sums)
+
+
+def motion_between(a: Sums, b: Sums) -> Motion:
+    """What happened from one moment to another."""
+    sums = (y - x for x, y in zip(a[2:], b[2:], strict=True))
+    return Motion(b.stamp_s, between(a.pose, b.pose), b.stamp_s - a.stamp_s, *sums)
 
 
 def together(motions: list[Motion]) -> Motion:

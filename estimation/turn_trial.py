@@ -105,10 +105,11 @@ class TurnTrial:
     def _accuse(self, off_rad: float, motion: Motion, lag_s: float, others: str) -> None:
         """Make up for the turn, and take the drift off from now on."""
         self._pieces.clear()
-        by_radps = -off_rad / motion.time_s if motion.is_measured else 0.0  # wheels are wrong by a share, which is no drift
+        is_drift = motion.is_measured and motion.time_s < 2.0 * SUM_S  # wheels are wrong by a share; and who knows when it was, in a long gap
+        by_radps = -off_rad / motion.time_s if is_drift else 0.0
         self.lag_rad = -by_radps * lag_s
         self.debt.owed = math.remainder(self.debt.owed + off_rad + self.lag_rad, math.tau)
-        if not motion.is_measured:
+        if not is_drift:
             return
         self.drift_radps += by_radps
         if abs(by_radps) > JUMP_RADPS:

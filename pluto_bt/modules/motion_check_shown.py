@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from estimation.motion_check import MotionCheck
 from estimation.news import LOST, WHEELS_GRIP
 from estimation.track import Tilt
-from pluto_bt.blackboard.messages import FVectorState, LaserScan
+from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import Arm
 from pluto_bt.skills.reasons import NO_POSE
@@ -28,6 +30,7 @@ class MotionCheckShown:
         self._topic = context.board.publisher("Localization/Check", "local")
         self._word = self._text = self._lost_text = ""
         self._pan_rad = 0.0
+        self._ranges_m: FloatArray | None = None
         self._shown: tuple[float, float, bool, bool, bool] | None = None
 
     def look(self, stamp_s: float, arm: Arm, tilt: Tilt) -> None:
@@ -35,7 +38,9 @@ class MotionCheckShown:
         sample = self._scan()
         if sample is None or not isinstance(sample.value, LaserScan) or sample.value.stamp_s != stamp_s:
             return
-        scan = sample.value
+        scan, last, self._ranges_m = sample.value, self._ranges_m, sample.value.ranges_m
+        if last is not None and _has_equal_half(last, scan.ranges_m):
+            return  # a laser that repeats itself is no witness
         panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
         if max(abs(arm.tilt_rad), abs(tilt[0]), abs(tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
             self._check.blind()
@@ -69,3 +74,9 @@ class MotionCheckShown:
         elif check.turn.is_settling:
             word, text = NO_POSE, SETTLING
         self._topic.put(FVectorState(now_s, (state[0], state[1], check.fits), (code,), word, text), now_s)
+
+
+def _has_equal_half(before: FloatArray, now: FloatArray) -> bool:
+    """True if the beams of one side are exactly those of the scan before."""
+    half = len(now) // 2
+    return len(before) == len(now) and (np.array_equal(before[:half], now[:half]) or np.array_equal(before[half:], now[half:]))

@@ -11,6 +11,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, split_flags
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, SonarState
 from pluto_bt.maps.platform import Platform
@@ -170,6 +172,8 @@ class Avoid:
         limits = self._goto.limits
         twist = within(regulate(way.turn_rad, way.speed_mps, limits), limits)
         share, verdict = self._clear_share(points, twist, senses.twist)
+        if share == 1.0 and len(points) and abs(way.speed_mps) < SAME_MPS and abs(way.turn_rad) < SAME_RAD:
+            verdict = self._seen(points, int(np.argmin(np.hypot(points[:, 0], points[:, 1]))))  # no way is free: goto stands by itself
         self.verdict = kept(self.verdict, verdict)
         if share == 0.0 and way.speed_mps < 0.0:
             self._goto.give_up_backing()

@@ -29,7 +29,9 @@ Gyro = Callable[[float, float], float]  # (t s, the true turn of a step) → the
 class Drive:
     """A robot at 0.5 m/s with gentle turns; its wheels turn by 10 % too much, as skidding ones do."""
 
-    def __init__(self, wheels: Wheels = lambda t, way: (way, way), gyro: Gyro = lambda t, turn: turn, has_laser: bool = True, asks_wheels: bool = True) -> None:
+    def __init__(
+        self, wheels: Wheels = lambda t, way: (way, way), gyro: Gyro = lambda t, turn: turn, has_laser: bool = True, asks_wheels: bool = True
+    ) -> None:
         self.check = MotionCheck(Limits(0.9, 0.8, 80.0), asks_wheels, has_gyro=True, judges_turns=True)
         self.true: Pose2 = (-6.0, 0.0, 0.0)
         self.believed = self.true
@@ -131,9 +133,20 @@ def test_a_car_whose_gyro_talks_nonsense_does_not_know_where_it_points() -> None
     assert drive.words == [GYRO_REFUSED, LOST]
 
 
-def test_in_a_blind_moment_nothing_is_concluded() -> None:
+@pytest.mark.parametrize("blind_s", [1.0, 20.0])
+def test_a_robot_that_is_carried_while_its_laser_is_blind_is_lost_when_it_sees_again(blind_s: float) -> None:
     drive = Drive().run(3.0)
-    drive.check.blind()  # the wrist looked down meanwhile
+    drive._has_laser = False
+    drive.run(blind_s, speed=0.0)
     drive.true = compose(drive.true, (0.0, 1.0, 0.5))
-    drive._scans.clear()
-    assert drive.run(3.0).words == []
+    drive._has_laser = True
+    assert drive.run(3.0).words == [LOST]
+
+
+def test_a_gyro_that_lied_in_a_long_blind_moment_is_put_right_after_it() -> None:
+    drive = Drive(gyro=lambda t, turn: turn + (0.2 * DT_S if 3.0 < t < 4.0 else 0.0)).run(3.0)
+    drive._has_laser = False
+    drive.run(30.0, speed=0.0)
+    drive._has_laser = True
+    drive.run(3.0)
+    assert drive.error_rad < 0.03 and abs(drive.check.turn.drift_radps) < 0.003
