@@ -167,10 +167,7 @@ class MotionCheck:
                 self._renew(scan)
             return
         self._last = (motion.time_s, off_m)
-        lag_s = self._reckoning.now_s - stamp_s
-        if self._judges_turns and self.turn.weigh(stamp_s, off_rad, SIGMAS * match.sigma_theta_rad, motion, lag_s):
-            self._renew(scan)
-            self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
+        if self._judges_turns and self._is_wrong_turn(scan, off_rad, SIGMAS * match.sigma_theta_rad, motion):
             return
         sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
         if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
@@ -178,6 +175,17 @@ class MotionCheck:
         if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
             self.turn.keep(stamp_s, off_rad, motion)
             self._renew(scan)
+
+    def _is_wrong_turn(self, scan: KeyScan, off_rad: float, noise_rad: float, motion: Motion) -> bool:
+        """True if the turn is found wrong, or is suspected and the next scan has to confirm it."""
+        stamp_s = scan.at.stamp_s
+        if self.turn.is_suspect(off_rad, noise_rad, motion) and not self._is_confirmed(stamp_s):
+            return True
+        if not self.turn.weigh(stamp_s, off_rad, noise_rad, motion, self._reckoning.now_s - stamp_s):
+            return False
+        self._renew(scan)
+        self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
+        return True
 
     def _is_carried(self, motion: Motion, off_m: float, aside_m: float) -> bool:
         """True if the difference came at once, or sideways: then somebody moved the robot."""

@@ -48,6 +48,10 @@ class TurnTrial:
             return wheel_turn_rad, False
         return (turn_rad - self.drift_radps * dt_s if is_measured else turn_rad), is_measured
 
+    def is_suspect(self, off_rad: float, noise_rad: float, motion: Motion) -> bool:
+        """True if one comparison alone would find the heading's source wrong."""
+        return abs(off_rad) > max(LEAST_RAD, noise_rad) and self._is_alone(motion)
+
     def weigh(self, stamp_s: float, off_rad: float, noise_rad: float, motion: Motion, lag_s: float) -> bool:
         """True if the heading's source was found wrong: at once, or little by little.
 
@@ -58,7 +62,7 @@ class TurnTrial:
         while self._pieces and stamp_s - self._pieces[0][0] > SUM_S:
             self._pieces.popleft()
         before_rad = sum(piece[1] for piece in self._pieces)
-        if abs(off_rad) > max(LEAST_RAD, noise_rad) and self._is_alone(motion):
+        if self.is_suspect(off_rad, noise_rad, motion):
             self.debt.owed += before_rad  # proved nothing till now
             self._accuse(off_rad, motion, lag_s, f"so do {motion.time_s:.1f} s of scans" if self._asks_wheels else "the laser denies it")
             return True
