@@ -81,9 +81,18 @@ class FindPath(Leaf):
             return self.succeed("the goal is near")
         self._set_output("near", False)
         around.way = around.find(goal)
+        if around.way is not None and not around.headway.decide(around.robot[:2]):
+            if goal is not None:
+                return self.fail("stuck", "one path after the other ends here")
+            x_m, y_m = around.way.points[-1].tolist()
+            around.map.give_up(x_m, y_m, ray.END_M)
+            around.way = around.find(goal)
         self._set_output("found", around.way is not None)
         if around.way is None:
             return self.succeed("all that can be reached is explored") if goal is None else self.fail("no-path", "every way is blocked")
+        if goal is not None and around.way.leads_there and ray.is_done(around.way, around.robot, around.map.cell_m):
+            self._set_output("near", True)
+            return self.succeed("no path leads nearer to the goal")
         return self.succeed(f"a path of {around.way.length_m:.1f} m")
 
 

@@ -12,6 +12,7 @@ from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
+from pluto_bt.skills.headway import Headway
 from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
@@ -42,6 +43,7 @@ class Surroundings:
         """A job begins; what was seen stays known, what was explored only if the job goes on."""
         self.rectangle = rectangle
         self.blocked = 0
+        self.headway = Headway()
         self.way: Way | None = None
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
         self.object: SeenObject | None = None

@@ -29,8 +29,8 @@ def pose_at(board: Blackboard, name: str, stamp_s: float) -> Pose | None:
         raise TypeError(f"{name} does not carry poses")
     share = share_between(before, after, stamp_s)
     a, b = before.pose, after.pose
-    x, y, z = (a[i] + share * (b[i] - a[i]) for i in range(3))
-    theta, phi, psi = (blend_angle(a[i], b[i], share) for i in range(3, 6))
+    x, y, z = a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
+    theta, phi, psi = blend_angle(a[3], b[3], share), blend_angle(a[4], b[4], share), blend_angle(a[5], b[5], share)
     return Pose(stamp_s, (x, y, z, theta, phi, psi), after.covariance, after.setter)
 
 

@@ -135,9 +135,8 @@ class Blackboard:
     def around(self, name: str, stamp_s: float) -> tuple[Sample, Sample] | None:
         """The two samples whose stamps enclose `stamp_s`, for interpolation; None if it lies outside the history."""
         samples = self.history(name)
-        stamps = [sample.value.stamp_s for sample in samples]
-        i = bisect.bisect_left(stamps, stamp_s)
-        if i < len(samples) and stamps[i] == stamp_s:
+        i = bisect.bisect_left(samples, stamp_s, key=_stamp)
+        if i < len(samples) and samples[i].value.stamp_s == stamp_s:
             return samples[i], samples[i]
         return (samples[i - 1], samples[i]) if 0 < i < len(samples) else None
 
@@ -162,3 +161,7 @@ class Blackboard:
                 kept.append(sample)
         for wake in self._watchers[index]:
             wake()
+
+
+def _stamp(sample: Sample) -> float:
+    return sample.value.stamp_s

@@ -15,12 +15,13 @@ import numpy as np
 
 from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, split_flags
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, SonarState
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters, drive_limits, is_finite
 from pluto_bt.skills.goto import Goto
-from pluto_bt.skills.heading import regulate, wrap
+from pluto_bt.skills.heading import regulate
 from pluto_bt.skills.limits import STILL, Twist, within
 from pluto_bt.skills.outline import Array, Planar, outline_of
 from pluto_bt.skills.sight import ScanView, Sight
@@ -140,7 +141,7 @@ class Avoid:
         else:
             heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
             speed_mps, most_radps = self.command.velocity
-            twist = within(regulate(wrap(heading_rad - raw_rad), speed_mps, self._limits, max(0.0, most_radps)), self._limits)
+            twist = within(regulate(wrap_angle(heading_rad - raw_rad), speed_mps, self._limits, max(0.0, most_radps)), self._limits)
         share, verdict = self._laser_share(now_s, senses, avoidance, twist)
         self.verdict = kept(self.verdict, verdict)
         v, w = self.command.velocity

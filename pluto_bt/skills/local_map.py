@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
-from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, clearances, mark_ground, mark_level
+from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, along_line, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 
@@ -84,8 +84,12 @@ class LocalMap:
 
     def clearances_m(self, points: Array) -> Array:
         """`clearance_m` of points (n, 2)."""
-        free: Array = self.clearance[self.cells(points)].astype(np.float64)
-        return free * self.cell_m
+        return under_points(self.clearance, points, self.cell_m, self.i0, self.j0) * self.cell_m
+
+    def clearances_between_m(self, a: tuple[float, float], b: tuple[float, float]) -> Array:
+        """`clearance_m` at each cell of the straight line from a to b."""
+        count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.cell_m) + 1)
+        return along_line(self.clearance, *self.place(*a), *self.place(*b), count) * self.cell_m
 
     # ------------------------------------------------------------------ seeing
 
@@ -118,17 +122,26 @@ class LocalMap:
         for tilt_rad in (0.0, 0.2):
             self.add(scan, (0.0, 0.0, 0.0), 0.5, tilt_rad)
         self.refresh(0.0)
+        self.clearances_m(np.zeros((1, 2)))
+        self.clearances_between_m((0.0, 0.0), (1.0, 0.0))
         self.forget((0.0, 0.0, 0.0))
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
+        self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
+        self._changed(*self.place(x_m, y_m), radius_m)
+
+    def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
+        """What is here cannot be explored any better: it counts as covered."""
+        self.covered[self._disc(x_m, y_m, radius_m)] = 1
+
+    def _disc(self, x_m: float, y_m: float, radius_m: float) -> tuple[Indices, Indices]:
+        """The cells around a point."""
         reach = math.ceil(radius_m / self.cell_m)
         i, j = self.cell(x_m, y_m)
-        for a in range(max(0, i - reach), min(CELLS, i + reach + 1)):
-            for b in range(max(0, j - reach), min(CELLS, j + reach + 1)):
-                if math.hypot(a - i, b - j) <= reach:
-                    self.low_s[a, b] = now_s
-        self._changed(float(i), float(j), radius_m)
+        a, b = np.mgrid[max(0, i - reach) : min(CELLS, i + reach + 1), max(0, j - reach) : min(CELLS, j + reach + 1)]
+        near = np.hypot(a - i, b - j) <= reach
+        return a[near], b[near]
 
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
