@@ -42,7 +42,7 @@ class JobLeaf(MotionLeaf):
             return
         job, command = robot.newest("motion/job"), self._ticket.command
         is_ours = isinstance(job, JobState) and job.number == self._number
-        self._was_accepted = False
+        self._was_accepted, self._posted_s = False, self._last_s
         self._post_job(robot, MotionCommand.RESUME if is_ours else MotionCommand(command.flags), command.position, command.velocity)
 
     def follow(self, robot: Robot) -> Status:
