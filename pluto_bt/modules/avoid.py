@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from pluto_bt.blackboard.codes import GotoStatus, LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LaserScan, Pose
 from pluto_bt.blackboard.poses import pose_at
@@ -15,9 +17,11 @@ from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
-from pluto_bt.skills.verdict import ALL_WELL, Verdict
+from pluto_bt.skills.verdict import Verdict
+from pluto_bt.skills.wall_parameters import WallParameters
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
+BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
 
 
 class Avoid:
@@ -29,7 +33,7 @@ class Avoid:
         self._board, self._clock = context.board, context.clock
         self._drive = context.inboxes["drive"]
         self._parameters = context.parameters(AvoidParameters)
-        self._skill = Skill(platform, self._parameters, context.parameters(DriveParameters))
+        self._skill = Skill(platform, self._parameters, context.parameters(DriveParameters), context.parameters(WallParameters))
         self._mount = LaserMount(context.board, platform)
         self._drive_status, self._drive_command = below(context, "drive")
         self._pose, self._dead = newest(context, "Localization/Pose"), newest(context, DEAD_RECKONING)
@@ -66,6 +70,8 @@ class Avoid:
         has_it = letter is None and self._drive_has_it()  # a goto posts anew in each cycle, so ask before: drive tells of the last cycle's
         command = self._skill.step(now_s, self._senses(now_s, STILL if status is None else status.data))
         if command is not None:
+            if letter is None and self._sent is not None and status is not None and status.element[0] in BUMPERS:
+                command = msgspec.structs.replace(command, stamp_s=self._sent.stamp_s)  # no new order: that would open the bumper's latch
             self._drive.post("avoid", command)
             self._sent = command
         has_it = has_it or self._drive_has_it()
@@ -92,8 +98,10 @@ class Avoid:
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
         check: FVectorState | None = self._check()
-        lost = Verdict(reason=check.reason, text=check.text) if check is not None and check.reason in (reasons.LOST, reasons.NO_POSE) else ALL_WELL
-        return AvoidSenses(pose if lost == ALL_WELL else None, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), lost)
+        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
+        if check is None or check.reason not in (reasons.LOST, reasons.NO_POSE):
+            return senses
+        return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

@@ -13,6 +13,7 @@ LASER_STALE = "laser-stale"
 LOST = "lost"
 NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
+NO_WALL = "no-wall"
 NOTHING_TO_RESUME = "nothing-to-resume"
 ODOMETRY_FROZEN = "odometry-frozen"
 ODOMETRY_STALE = "odometry-stale"
@@ -24,6 +25,7 @@ SONAR_STALE = "sonar-stale"
 STOPPED = "stopped"
 STUCK = "stuck"
 UNSEEN = "unseen"
+WALL_LOST = "wall-lost"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
@@ -37,6 +39,7 @@ CHAIN_REASONS: dict[str, str] = {
     LOST: "the laser sees another place than wheels and gyro tell of: nobody knows where the robot is; post a pose",
     NO_DEVICE: "the job needs a device that the platform does not have",
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
+    NO_WALL: "wall follow sees no wall within reach, or none with room beside it",
     NOTHING_TO_RESUME: "45: nothing was stopped, and no rectangle is set",
     OUTSIDE_RECTANGLE: "the goal or the start is outside the rectangle",
     ODOMETRY_FROZEN: "the wheels are told to turn and the encoders stand still: blocked wheels or dead encoders",
@@ -46,6 +49,7 @@ CHAIN_REASONS: dict[str, str] = {
     SONAR: "a sonar hears an obstacle in the way; slower or stopped until it is clear",
     SONAR_STALE: "the sonar is asked for and delivers nothing that can be trusted",
     STOPPED: "stop was commanded, or the link's thread is stopped",
-    STUCK: "goto makes no progress towards the goal",
+    STUCK: "goto makes no progress towards the goal, or wall follow none along the wall",
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
+    WALL_LOST: "the wall that was followed is not there any more",
 }
