@@ -17,6 +17,7 @@ import tempfile
 import threading
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 
@@ -144,7 +145,7 @@ def _live(path: str) -> None:
     wire.connect(path)
     wire.sendall(HELLO.pack(os.getpid()))
     system = _system(MonotonicClock())
-    base = system.simulator.devices["base"]
+    base: Any = system.simulator.devices["base"]
     own = base.drive
 
     def drive(speed_mps: float, turn_rate_radps: float) -> None:

@@ -64,8 +64,12 @@ class Stopped:
         self._port = GatewayPort(self.system.context)
         at = kind.stop_s
         self._plan: list[tuple[float, Callable[[GatewayPort], None]]] = [
-            (at, stop), (at + 3.0, self._note), (at + 3.5, let_go), (at + 5.5, self._note), (at + 6.0, lambda port: port.mission("resume", "", "", "test")),
-        ]  # fmt: skip
+            (at, stop),
+            (at + 3.0, self._note),
+            (at + 3.5, let_go),
+            (at + 5.5, self._note),
+            (at + 6.0, lambda port: port.mission("resume", "", "", "test")),
+        ]
         self.noted: list[tuple[str, str, str, tuple[float, ...]]] = []  # mission's state and reason, filter's reason, velocities
         self.told: list[tuple[float, tuple[float, float]]] = []
         self.system.board.on_change("world/state", self._act)
