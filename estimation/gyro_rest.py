@@ -65,7 +65,7 @@ class GyroRest:
             self._doubted_rad = held_rad
             return
         off_radps = mean - self.bias_radps
-        self.jumped = abs(off_radps) > self.SIGMAS * self._max_spread_radps / math.sqrt(taken) + self.SLACK_RADPS
+        self.jumped = abs(off_radps) > self.SIGMAS * spread_radps / math.sqrt(taken) + self.SLACK_RADPS
         self.bias_radps += off_radps if self.jumped else off_radps * taken / (taken + self._memory)
         if not self.jumped:
             self._owed_rad += self._doubted_rad  # the second before was no jump of the bias

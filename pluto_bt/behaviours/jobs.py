@@ -69,7 +69,7 @@ class JobLeaf(MotionLeaf):
         if isinstance(job, JobState):
             self._number = job.number
         phase = MotionStatus(motion) if motion in tuple(MotionStatus) else MotionStatus.AT_REST
-        return self.wait(", ".join(filter(None, (code_name(phase), status.text if status.reason else ""))))
+        return self.wait(code_name(phase))
 
     def _post_job(self, robot: Robot, flags: MotionCommand, position: Pair, velocity: Pair) -> None:
         avoid = AVOIDANCE[self.get_input("avoid")]
