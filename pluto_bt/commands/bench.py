@@ -12,6 +12,7 @@ BENCHES = {
     "rays": "laser scans against the plain versions",
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
     "stop-times": "from a cause to zero velocity, 1000 trials each",
+    "faults": "two things break at once, in places drawn at random",
     "tick": "a tick of the tree against stock py_trees",
     "movement": "patrols, goto, moveto, explore and investigate in worlds drawn at random, with and without people",
     "repeat": "runs with one seed: equal traces",

@@ -17,6 +17,7 @@ from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.verdict import Verdict
 from pluto_bt.skills.wall_parameters import WallParameters
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
@@ -37,7 +38,7 @@ class Avoid:
         self._drive_status, self._drive_command = below(context, "drive")
         self._pose, self._dead = newest(context, "Localization/Pose"), newest(context, DEAD_RECKONING)
         self._raw, self._sonar = newest(context, "ATRV2/Drive/Raw"), newest(context, "ATRV2/Sonar")
-        self._scan = newest(context, "sick/scan")
+        self._scan, self._check = newest(context, "sick/scan"), newest(context, "Localization/Check")
         self._view: ScanView | None = None
         self._sent: ActuatorState | None = None
 
@@ -97,7 +98,11 @@ class Avoid:
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
-        return AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), waits)
+        check: FVectorState | None = self._check()
+        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), waits)
+        if check is None or check.reason not in (reasons.LOST, reasons.NO_POSE):
+            return senses
+        return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

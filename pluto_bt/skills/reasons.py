@@ -10,6 +10,7 @@ EXECUTIVE_SILENT = "executive-silent"
 LASER = "laser"
 LASER_FATAL = "laser-fatal"
 LASER_STALE = "laser-stale"
+LOST = "lost"
 NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
 NO_WALL = "no-wall"
@@ -36,6 +37,7 @@ CHAIN_REASONS: dict[str, str] = {
     LASER: "the laser sees an obstacle in the way; slower or stopped until it is clear",
     LASER_FATAL: "the laser has had a fatal error and is rebooting (about 20 s)",
     LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
+    LOST: "the laser sees another place than wheels and gyro tell of: nobody knows where the robot is; post a pose",
     NO_DEVICE: "the job needs a device that the platform does not have",
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
     NO_WALL: "wall follow sees no wall within reach, or none with room beside it",

@@ -49,6 +49,13 @@ class SeenSpace:
         """The lower left corner in the frame of dead reckoning."""
         return self._corner[0] * CELL_M, self._corner[1] * CELL_M
 
+    def forget(self) -> None:
+        """Nothing was ever seen: the robot stands in another place."""
+        for cells in (self.seen, self._heard, self.stamps, self.spots):
+            cells.fill(NEVER)
+        self._last_ranges_m = None
+        self._rounds.clear()
+
     def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> bool:
         """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free.
 

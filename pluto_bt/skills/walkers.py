@@ -61,6 +61,10 @@ class WalkerWatch:
 
     def __init__(self, memory_s: float) -> None:
         self._memory_s = memory_s
+        self.forget()
+
+    def forget(self) -> None:
+        """Nobody was ever seen."""
         self._movers = Movers()
         self._scans: list[tuple[LaserScan, Planar]] = []
         self._walkers: list[Walker] = []
