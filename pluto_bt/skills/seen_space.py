@@ -78,6 +78,7 @@ class SeenSpace:
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
         ahead = scan.ranges_m * np.cos(angles)
         usable = (scan.ranges_m > 0.0) & (scan.ranges_m < self._reach_m) & (z_m - ahead * math.sin(tilt_rad) > GROUND_M)
+        usable &= self._believed(scan.ranges_m) > 0.0  # no level scan could take a dazzled beam back
         c, s = math.cos(laser[2]), math.sin(laser[2])
         x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * np.sin(angles))[usable]
         for px, py in zip((laser[0] + c * x - s * y).tolist(), (laser[1] + s * x + c * y).tolist(), strict=True):
