@@ -13,6 +13,7 @@ BENCHES = {
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
     "stop-times": "from a cause to zero velocity, 1000 trials each",
     "tick": "a tick of the tree against stock py_trees",
+    "check": "a mission of 10 000 nodes, loaded and checked",
     "patrols": "patrols over random courses in places nobody tuned to",
     "movement": "moveto, explore and investigate in worlds drawn at random",
     "repeat": "runs with one seed: equal traces",
