@@ -140,6 +140,14 @@ def test_a_loop_over_a_list_is_a_leg_for_each_element_and_a_round_ends_at_its_be
 def test_a_world_whose_script_opens_ways_makes_a_missing_way_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
     script = '<script><at t="5"><remove id="lid"/></at></script>'
     assert checked(capsys, '<MoveTo goal="17;8.5"/>', more=script)[0] == ["2:15 warning no-way"]
+    assert checked(capsys, '<MoveTo goal="9;5"/>', more=script)[0] == ["2:15 warning goal-blocked"]
+    assert checked(capsys, '<MoveTo goal="4;8"/>', more=script)[0] == ["2:15 error forbidden"]
+
+
+def test_a_robot_with_eyes_may_leave_the_mapped_area_on_its_way(capsys: pytest.CaptureFixture[str]) -> None:
+    area = '<area kind="map">1,1 12,1 12,9 11,9 11,2.5 7,2.5 7,9 1,9</area>'
+    assert checked(capsys, '<GoTo goal="11.5;5"/>', more=area)[0] == ["2:13 warning outside-map"]
+    assert checked(capsys, '<GoTo goal="13;5"/>', more=area)[0] == ["2:13 error outside-map"]
 
 
 def test_the_car_has_no_eyes_and_a_mapped_area(capsys: pytest.CaptureFixture[str]) -> None:

@@ -58,6 +58,8 @@ class LegCheck:
         self._scene = Scene(replace(self._world, shapes=solid))
         self._forbidden = Scene(World("forbidden", shapes=_forbidden_shapes(world)))
         self._area = MapArea.of(world)
+        self._has_eyes = robot.devices.laser is not None or robot.devices.sonar is not None
+        # a script that takes things away or puts them elsewhere may open ways that are not there at the start
         self._changes = any(isinstance(action, (Remove, Put)) for entry in world.script for action in _actions(entry))
         self._ways: Ways | None = None
         self._lost: set[Point] = set()  # goals that cannot be reached
@@ -111,7 +113,9 @@ class LegCheck:
         for scene, code, what in ((self._scene, "goal-blocked", "cannot stand"), (self._forbidden, "forbidden", "must not be")):
             hit = self._hit_at(scene, at)
             if hit:
-                self._error(leg, code, f"the robot {what} at {shown}", "a free place", f'"{hit}" is there', "choose a goal further away from it")
+                what, mend = f"the robot {what} at {shown}", "choose a goal further away from it"
+                may_be_free = self._changes and scene is self._scene
+                self._error(leg, code, what, "a free place", f'"{hit}" is there', mend, is_warning=may_be_free)
                 return False
         return True
 
@@ -141,8 +145,9 @@ class LegCheck:
         theta = math.atan2(goal[1] - start[1], goal[0] - start[0])
         line: tuple[Pose, Pose] = ((*start, theta), (*end, theta))
         if leg.way == "straight" and not self._area.has_line(*start, *goal):
-            where = f"{_shown(start)} → {_shown(goal)}"
-            self._error(leg, "outside-map", "the straight way leaves the mapped area", "a way inside", where, "give a goal between")
+            where = f"{_shown(start)} → {_shown(goal)}"  # who has no eyes is held by that area alone
+            what = "the straight way leaves the mapped area"
+            self._error(leg, "outside-map", what, "a way inside", where, "give a goal between", is_warning=self._has_eyes)
             return straight_m
         blocked, banned = path_is_clear(self._scene, self._outline, line), path_is_clear(self._forbidden, self._outline, line)
         if blocked is None and banned is None and leg.way != "planned":
@@ -150,31 +155,31 @@ class LegCheck:
         if leg.way == "straight" and banned is not None:
             found = f'"{banned.nearest.owner}" at {_shown(banned.pose_map_robot)}'
             self._error(leg, "forbidden", "the straight way leads through what is forbidden", "an allowed way", found, "give a goal between")
-        return self._length_around_m(leg, start, goal, straight_m, blocked or banned)
+        around_m = self._length_around_m(leg, start, goal, blocked or banned)
+        if blocked is not None and leg.way == "straight" and around_m != math.inf:
+            self._tell_blocked(leg, blocked)
+        return straight_m if around_m is None else max(straight_m, around_m)
 
-    def _length_around_m(self, leg: Leg, start: Point, goal: Point, straight_m: float, hit: Blocked | None) -> float:
-        """The same where the straight way is not free, or the leaf plans in any case."""
+    def _length_around_m(self, leg: Leg, start: Point, goal: Point, hit: Blocked | None) -> float | None:
+        """The length of a planned way, infinite and a fault where there is none; None where that is not sure."""
         ways = self._ways
         assert ways is not None  # run() has made it
         if not (ways.is_drawn(start) and ways.is_drawn(goal)):
-            return straight_m
+            return None
         around_m = ways.length_m(start, goal, leg.tolerance_m)
-        if around_m is None and (leg.way == "planned" or ways.is_cut_off(start, goal)):
-            self._lost.add(goal)
-            what = f"there is no way from {_shown(start)} to {_shown(goal)}" + (f" that is {ways.width_m:.2f} m wide" if leg.way == "planned" else "")
-            found = f'"{hit.nearest.owner}" is in between' if hit is not None else "it is too narrow"
-            self._error(leg, "no-way", what, "a goal that can be reached", found, is_warning=self._changes)  # the world's script may open one
-            return math.inf
-        if leg.way == "straight" and hit is not None and hit.nearest.owner in self._scene.owners:
-            self._tell_blocked(leg, hit.nearest.owner, hit.pose_map_robot)
-        return straight_m if around_m is None else max(straight_m, around_m)
+        if around_m is not None or not (leg.way == "planned" or ways.is_cut_off(start, goal)):
+            return around_m
+        self._lost.add(goal)
+        what = f"there is no way from {_shown(start)} to {_shown(goal)}" + (f" that is {ways.width_m:.2f} m wide" if leg.way == "planned" else "")
+        found = f'"{hit.nearest.owner}" is in between' if hit is not None else "it is too narrow"
+        self._error(leg, "no-way", what, "a goal that can be reached", found, is_warning=self._changes)
+        return math.inf
 
-    def _tell_blocked(self, leg: Leg, owner: str, pose: Pose) -> None:
-        has_eyes = self._robot.devices.laser is not None or self._robot.devices.sonar is not None
-        mend = "it steers round single things; for a way round a building use MoveTo, or goals between" if has_eyes else "give a goal between"
-        found = f'"{owner}" in front of {_shown(pose)}'
-        # who sees nothing drives into it
-        self._error(leg, "leg-blocked", f"the straight way of <{leg.plan.type_name}> is blocked", "a free way", found, mend, is_warning=has_eyes)
+    def _tell_blocked(self, leg: Leg, hit: Blocked) -> None:
+        round_it = "it steers round single things; for a way round a building use MoveTo or NavigateTo, or goals between"
+        what, mend = f"the straight way of <{leg.plan.type_name}> is blocked", round_it if self._has_eyes else "give a goal between"
+        found = f'"{hit.nearest.owner}" in front of {_shown(hit.pose_map_robot)}'
+        self._error(leg, "leg-blocked", what, "a free way", found, mend, is_warning=self._has_eyes)  # who sees nothing drives into it
 
     def _error(self, leg: Leg, code: str, message: str, expected: str, found: str, mend: str = "", is_warning: bool = False) -> None:
         if (leg.place, code) not in self._told:

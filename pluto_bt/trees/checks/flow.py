@@ -37,7 +37,7 @@ class Flow:
         self._writers: dict[Home, Place] = {}
         self._uses: dict[int, tuple[list[Use], list[Use]]] = {}  # by id of a plan: before its children are ticked, and after
         self._told = {(fault.file, fault.line, fault.column) for fault in report.faults.in_order() if fault.severity == "error"}
-        self._is_closed = True
+        self._is_closed = True  # no leaf but ours, which write what their ports tell and nothing else
         self._loose: set[str] = set()  # keys that nodes name of which nothing is known
 
     def run(self, nodes: list[Plan]) -> None:
