@@ -36,7 +36,7 @@ class MotionLeaf(Leaf):
 
     Attributes:
         DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
-        WAY: how the leaf comes to its port `goal`: "straight", or "found" if it looks for a way; "stays" if it stays where it is; "" else.
+        WAY: how the leaf comes to its port `goal`: "straight", "planned" on the map, "found" on the way; "stays" if it stays where it is; "" else.
     """
 
     DRIVES: ClassVar = True

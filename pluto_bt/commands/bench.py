@@ -15,6 +15,8 @@ BENCHES = {
     "faults": "two things break at once, in places drawn at random",
     "tick": "a tick of the tree against stock py_trees",
     "movement": "patrols, goto, moveto, explore and investigate in worlds drawn at random, with and without people",
+    "check": "a mission of 10 000 nodes, loaded and checked",
+    "patrols": "patrols over random courses in places nobody tuned to",
     "repeat": "runs with one seed: equal traces",
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",

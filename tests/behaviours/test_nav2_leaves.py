@@ -15,8 +15,7 @@ from pluto_bt.behaviours.nav2.missing import MISSING
 from pluto_bt.blackboard.messages import ActuatorState, BatteryState, FVectorState, LaserScan, read_only
 from pluto_bt.maps.world import Goal, Shape, World
 from pluto_bt.skills.sight import ScanView
-from pluto_bt.trees import TickError
-from pluto_bt.trees.loader.load import check_mission
+from pluto_bt.trees import TickError, check_mission
 
 ROOMS = World(
     "rooms",
