@@ -20,6 +20,7 @@ BEFORE_S = 0.55  # a scan is compared with one so much older, so that who stroll
 IN_VIEW_S = 0.6  # after so long without being seen he is out of view
 SAME_M, SAME_MPS, SAME_S = 0.4, 0.8, 2.0  # who is seen so near to where somebody was expected is the same one, if it is not too long ago
 SURE = 2  # a single sighting may be a grazed edge
+REFUTED_S, BODY_M = 0.3, 0.3  # who is not seen in the next scans where he must be, with so much of a body, was a phantom
 UNSTEADY_MPS = 0.2  # nobody walks quite evenly
 MOST_MPS, HURRY = 2.0, 1.25
 HEARD_MPS = 1.2  # how fast somebody may be who was only heard
@@ -81,11 +82,15 @@ class WalkerWatch:
         points = np.column_stack((laser[0] + ranges[near] * np.cos(bearing), laser[1] + ranges[near] * np.sin(bearing)))
         moved = came_closer(ranges, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
         self._movers.velocities(points, np.flatnonzero(near), moved, scan.stamp_s)
-        self._meet([Walker(x, y, vx, vy, 0.0, stamp_s) for x, y, vx, vy, stamp_s in self._movers.walkers.tolist()])
+        self._meet(_apart([Walker(x, y, vx, vy, 0.0, stamp_s) for x, y, vx, vy, stamp_s in self._movers.walkers.tolist()]))
+        seen = [one for one in self._walkers if one.stamp_s == scan.stamp_s]
+        self._walkers = [one for one in self._walkers if not _is_refuted(one, scan, laser, believed, seen)]
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
         """(n, 3) x m, y m and how far beside that he may be: who comes nearer, as `Approach` hears it."""
-        self._meet([Walker(x, y, 0.0, 0.0, unsure_m, stamp_s) for x, y, unsure_m in places.tolist()])
+        heard = [Walker(x, y, 0.0, 0.0, unsure_m, stamp_s) for x, y, unsure_m in places.tolist()]
+        seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.stamp_s <= IN_VIEW_S]
+        self._meet([one for one in heard if not any(_may_be(other, one) for other in seen)])  # the laser knows better where he is
 
     def rows(self, now_s: float) -> Array:
         """(n, ROW) of all who are known about."""
@@ -107,11 +112,50 @@ class WalkerWatch:
         for one in seen:
             known = [other for other in self._walkers if one.stamp_s - SAME_S < other.stamp_s < one.stamp_s]
             nearest = min(known, key=lambda other: other.gap_m(one), default=None)
-            if nearest is not None and nearest.gap_m(one) < SAME_M + SAME_MPS * (one.stamp_s - nearest.stamp_s) + one.unsure_m:
+            if nearest is not None and _may_be(nearest, one):
                 self._walkers.remove(nearest)
                 one.times = nearest.times + 1
             self._walkers.append(one)
         del self._walkers[:-MOST_WALKERS]
+
+
+def _may_be(known: Walker, seen: Walker) -> bool:
+    """True if who is seen may be the one who is known."""
+    return known.gap_m(seen) < SAME_M + SAME_MPS * abs(seen.stamp_s - known.stamp_s) + seen.unsure_m
+
+
+def _apart(seen: list[Walker]) -> list[Walker]:
+    """Those of one scan; two so near to each other are two sides of one person."""
+    kept: list[Walker] = []
+    for one in sorted(seen, key=lambda one: -math.hypot(one.vx_mps, one.vy_mps)):
+        if all(math.hypot(one.x_m - other.x_m, one.y_m - other.y_m) > 2.0 * BODY_M for other in kept):
+            kept.append(one)
+    return kept
+
+
+def _is_refuted(walker: Walker, scan: LaserScan, laser: Planar, believed: Array, seen: list[Walker]) -> bool:
+    """True if every beam that passes where he can be goes on behind it, or ends at somebody who is `seen`.
+
+    Nobody vanishes in plain view: he is that one, or never was.
+    """
+    if scan.stamp_s - walker.stamp_s < REFUTED_S:
+        return False
+    x_m, y_m, _, _, spread_m, _, _ = walker.row(scan.stamp_s)
+    distance_m, radius_m = math.hypot(x_m - laser[0], y_m - laser[1]), spread_m + BODY_M
+    if distance_m <= radius_m:
+        return False
+    half_rad = math.asin(radius_m / distance_m)
+    first_rad = math.remainder(math.atan2(y_m - laser[1], x_m - laser[0]) - laser[2], math.tau) - half_rad - scan.angle_min_rad
+    first, last = math.floor(first_rad / scan.angle_step_rad), math.ceil((first_rad + 2.0 * half_rad) / scan.angle_step_rad)
+    if first < 0 or last >= len(scan.ranges_m):
+        return False
+    beams = scan.ranges_m[first : last + 1]
+    explained = (beams > distance_m + radius_m) | (believed[first : last + 1] == 0.0)
+    bearings = laser[2] + scan.angle_min_rad + scan.angle_step_rad * np.arange(first, last + 1)
+    end_x, end_y = laser[0] + beams * np.cos(bearings), laser[1] + beams * np.sin(bearings)
+    for one in seen:
+        explained |= np.hypot(end_x - one.x_m, end_y - one.y_m) < 2.0 * BODY_M
+    return bool(explained.all())
 
 
 NOBODY: Array = np.zeros((0, ROW))
