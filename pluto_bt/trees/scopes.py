@@ -7,7 +7,6 @@ Every assignment counts as a write, even of an equal value: `seq` counts them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 from pluto_bt.trees.values import STRING, Kind, PortProblem, kind_of_value
@@ -184,26 +183,33 @@ def _fitted(key: str, wanted: Kind, kind: Kind | None, value: Any) -> Any:
     raise PortProblem(f"entry {key!r} holds {wanted.name} and cannot take {found}")
 
 
-def reader(scope: Scope, key: str, kind: Kind) -> Callable[[], Any]:
-    """A function that reads the entry `key` as `kind`. It looks the entry up again only after entries were made or removed."""
-    board, wanted, convert = scope.board, kind.python, kind.convert
-    missing = Entry()
-    entry = missing
-    seen = -1
+class EntryReader:
+    """Reads the entry `key` of a scope as a kind. It looks the entry up again only after entries were made or removed.
 
-    def read() -> Any:
-        nonlocal entry, seen
-        if seen != board.changes:
-            entry, seen = scope.find(key) or missing, board.changes
-        value = entry.value
-        if type(value) is wanted:
+    The fields are open to `get_input` of leaves, which spares itself the call as long as nothing has to be looked up or converted.
+    """
+
+    __slots__ = ("board", "convert", "entry", "key", "scope", "seen", "wanted")
+
+    def __init__(self, scope: Scope, key: str, kind: Kind) -> None:
+        self.scope, self.key, self.board = scope, key, scope.board
+        self.wanted, self.convert = kind.python, kind.convert
+        self.entry, self.seen = MISSING, -1
+
+    def read(self) -> Any:
+        """The value. Raises MissingValue, or PortProblem if it does not fit."""
+        if self.seen != self.board.changes:
+            self.entry, self.seen = self.scope.find(self.key) or MISSING, self.board.changes
+        value = self.entry.value
+        if type(value) is self.wanted:
             return value
         if value is EMPTY:
-            raise MissingValue(f"entry {key!r} has no value")
-        return convert(value)
-
-    return read
+            raise MissingValue(f"entry {self.key!r} has no value")
+        return self.convert(value)
 
 
 class MissingValue(PortProblem):
     """An entry that nobody has written."""
+
+
+MISSING: Final = Entry()  # stands for an entry that does not exist
