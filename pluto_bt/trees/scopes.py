@@ -33,19 +33,21 @@ EMPTY: Final = _Empty()
 
 
 class Entry:
-    """One value with its kind (None: open) and the count of its writes."""
+    """One value with its kind (None: open) and the count of its writes; `board` counts those of all entries."""
 
-    __slots__ = ("kind", "seq", "value")
+    __slots__ = ("board", "kind", "seq", "value")
 
-    def __init__(self, kind: Kind | None = None, value: Any = EMPTY) -> None:
+    def __init__(self, board: Board, kind: Kind | None = None) -> None:
+        self.board = board
         self.kind = kind
-        self.value = value
+        self.value: Any = EMPTY
         self.seq = 0
 
     def put(self, value: Any) -> None:
         """Store without looking at kinds; counts as a write."""
         self.value = value
         self.seq += 1
+        self.board.writes += 1
 
 
 class TopicEntry(Entry):
@@ -84,6 +86,7 @@ class Board:
         self.robot: Any = None
         self.topic_names = frozenset(topics.names()) if topics is not None else frozenset()
         self.changes = 0  # counts entries made and removed, so that readers know when to look again
+        self.writes = 0  # counts all writes, and entries made and removed
         self.root = Scope(self, None, "")
 
 
@@ -123,8 +126,9 @@ class Scope:
         if entry is None:
             entry = self._topic(key) if self.parent is None else None
         if entry is None:
-            entry = self.entries[key] = Entry(kind)
+            entry = self.entries[key] = Entry(self.board, kind)
             self.board.changes += 1
+            self.board.writes += 1
         return entry
 
     def write(self, key: str, value: Any, kind: Kind | None = None) -> None:
@@ -160,6 +164,7 @@ class Scope:
             self.board.root.unset(key[1:])
         elif self.entries.pop(key, None) is not None:
             self.board.changes += 1
+            self.board.writes += 1
 
     def _falls_through(self, key: str) -> bool:
         return self.autoremap and not key.startswith("_")
@@ -212,4 +217,5 @@ class MissingValue(PortProblem):
     """An entry that nobody has written."""
 
 
-MISSING: Final = Entry()  # stands for an entry that does not exist
+NO_BOARD: Final = Board()
+MISSING: Final = Entry(NO_BOARD)  # stands for an entry that does not exist

@@ -238,7 +238,8 @@ def test_conditions(stage: Any, run: Any, xml: str, status: str) -> None:
 
 
 def test_distance_controller(stage: Any, run: Any) -> None:
-    mission = run('<PipelineSequence><DistanceController distance="0.5"><Say text="now"/></DistanceController><Sleep msec="9999"/></PipelineSequence>')
+    paced = '<DistanceController distance="0.5"><Say text="now"/></DistanceController>'
+    mission = run(f'<PipelineSequence>{paced}<Sleep msec="9999"/></PipelineSequence>')
     for x_m in (3.0, 3.4, 3.5, 3.6, 4.0, 3.6):
         stage.robot.is_at(x_m, 2.0)
         assert mission.tick_once() == "RUNNING"

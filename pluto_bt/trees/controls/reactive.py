@@ -54,12 +54,14 @@ class Reactive(ControlNode):
 class ReactiveSequence(Reactive):
     """Conditions first, then the work: the conditions are asked again in every tick while the work is RUNNING."""
 
+    PASSES_ON = True
     GOES_ON, DECIDES = SUCCESS, FAILURE
 
 
 class ReactiveFallback(Reactive):
     """Better plans first: each tick tries them again, and the plan that was RUNNING is halted when a better one runs."""
 
+    PASSES_ON = True
     GOES_ON, DECIDES = FAILURE, SUCCESS
 
 

@@ -11,7 +11,7 @@ from py_trees.ports import NoDataAvailable
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel, PortProblem, range_problem
-from pluto_bt.trees.scopes import EntryReader, MissingValue, Scope
+from pluto_bt.trees.scopes import NO_BOARD, EntryReader, MissingValue, Scope
 from pluto_bt.trees.values import ANYTHING, Kind
 
 Readers = dict[str, Callable[[], Any]]
@@ -96,9 +96,10 @@ def wire_leaf(leaf: Any, ports: dict[str, PortModel], readers: Readers, writers:
 
 
 def _get_input(leaf: Any, ports: dict[str, PortModel], readers: Readers) -> Callable[..., Any]:
-    cells = {name: read.__self__ for name, read in readers.items() if isinstance(getattr(read, "__self__", None), EntryReader)}
+    owners = {name: getattr(read, "__self__", None) for name, read in readers.items()}
+    cells = {name: owner for name, owner in owners.items() if isinstance(owner, EntryReader)}
     find = cells.get
-    board = next((cell.board for cell in cells.values()), None)
+    board = next((cell.board for cell in cells.values()), NO_BOARD)
 
     def get_input(port_name: str, default: Any = None) -> Any:
         cell = find(port_name)
