@@ -59,7 +59,7 @@ def run_once(folder: str, policy: str, kill_at: int = 0) -> None:
         if count == kill_at:
             os.kill(os.getpid(), signal.SIGKILL)
 
-    executive.step = counted  # type: ignore[method-assign]
+    executive.step = counted
     result = runner.run()
     told = {"result": result.result, "reason": result.reason, "distance_m": result.distance_m, "ticks": result.ticks, "steps": steps}
     Path(folder, "run.json").write_text(json.dumps(told), encoding="utf-8")

@@ -11,9 +11,11 @@ from typing import Any
 
 from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.trees.contracts import Contract
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
+from pluto_bt.trees.loader.contracts import read_contracts
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
 from pluto_bt.trees.loader.foreign import foreign_type
@@ -38,6 +40,7 @@ class Reading:
     plan: Plan | None = None
     text: str = ""
     file: str = ""
+    contracts: Sequence[Contract] = ()
 
     @property
     def origin(self) -> Origin:
@@ -89,7 +92,9 @@ def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())
-    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
+    mission = Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
+    mission.contracts = tuple(reading.contracts)
+    return mission
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
@@ -119,6 +124,7 @@ def read_mission(
     if reading.files.root is None:
         return reading
     is_whole = not faults.has_errors  # a tree of a file that could not be read must not be called unknown
+    reading.contracts = read_contracts(reading.files.contracts, reading.report)
     StaticCheck(reading.files, reading.types, reading.report).run()
     if not is_whole:
         return reading
