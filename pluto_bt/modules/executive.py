@@ -106,7 +106,7 @@ class Executive:
     def note_end(self, now_s: float) -> None:
         """The run is over: note how things stand, also if the executive itself hangs."""
         if self._log is not None:
-            self._log.step(now_s, [], [])
+            self._log.step(now_s, [], [], is_end=True)
 
     def _show_trees(self, ticked: list[Activity], lines: list[str], now_s: float) -> None:
         """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""
