@@ -12,6 +12,7 @@ from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
+from pluto_bt.skills import wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
 
@@ -21,11 +22,11 @@ LOOK_EVERY_NS = NS // 2
 LOOK_EVERY_S = 0.05
 
 
-def rehearse(system: System, with_jobs: bool) -> None:
+def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
     """Drive half a second, so that every kernel is compiled before a watchdog looks. The system is in lockstep and is then thrown away.
 
     Args:
-        with_jobs: the jobs of motion may be asked for, so their kernels too.
+        with_jobs, with_walls: the jobs of motion, or wall follow, may be asked for, so their kernels too.
     """
     assert isinstance(system.scheduler, Lockstep)
     system.start_parts()
@@ -34,6 +35,8 @@ def rehearse(system: System, with_jobs: bool) -> None:
     system.scheduler.run_until(NS // 2)
     if with_jobs:
         system.robot.surroundings.warm()
+    if with_walls:
+        wall_path.warm()
 
 
 class Loop:

@@ -16,6 +16,7 @@ from pluto_bt.behaviours.look_around import WristTour
 from pluto_bt.behaviours.path_driver import PathDriver
 from pluto_bt.behaviours.paths import FindPath
 from pluto_bt.behaviours.plan_path import Planning
+from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
@@ -41,8 +42,9 @@ class Runner:
         self.inputs = inputs
         self.mission = mission
         with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
+        with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
         quiet = replace(options, trace_path=None, has_gateway=False, record=None, own_clock=None, on_event=lambda event: None)
-        rehearse(System(quiet, VirtualClock()), with_jobs)
+        rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
