@@ -68,6 +68,11 @@ TREES = {
     "Delay": f'<Sequence><Delay delay_msec="0">{B}</Delay>{A}</Sequence>',
     "Timeout": f'<Sequence><Timeout msec="90000">{B}</Timeout>{A}</Sequence>',
     "SubTree": f'<Sequence>{A}<SubTree ID="sub" name="one" x="5"/><SubTree ID="sub" name="two" x="{{y}}"/></Sequence>',
+    "RateController": f'<Sequence>{A}<RateController hz="2">{W("d", 4)}</RateController>{B}</Sequence>',
+    "RoundRobin": f'<Repeat num_cycles="3"><ForceSuccess><RoundRobin>{A}{F}{B}</RoundRobin></ForceSuccess></Repeat>',
+    "RecoveryNode": f'<ForceSuccess><RecoveryNode number_of_retries="2">{F}{A}</RecoveryNode></ForceSuccess>',
+    "PersistentSequence": f'<Sequence><Script code="i := 0"/><PersistentSequence current_child_idx="{{i}}">{A}{B}</PersistentSequence></Sequence>',
+    "SingleTrigger": f'<Repeat num_cycles="2"><Sequence><ForceSuccess><SingleTrigger>{A}</SingleTrigger></ForceSuccess>{B}</Sequence></Repeat>',
     "entries": f"<Sequence><Script code=\"n := 3; r := 1.5; t := 'x'\"/>{A}<UnsetBlackboard key=\"n\"/>{B}</Sequence>",
 }  # fmt: skip
 SUB = f'<BehaviorTree ID="sub"><Sequence><Script code="z := x"/>{B}</Sequence></BehaviorTree>'
