@@ -9,6 +9,7 @@ from typing import Any, Final, NamedTuple
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.board_view import BoardView
+from pluto_bt.trees.contracts import Contract, ContractWatch
 from pluto_bt.trees.controls.reactive import ReactiveSequence
 from pluto_bt.trees.controls.sequence import Sequence
 from pluto_bt.trees.controls.try_catch import TryCatch
@@ -43,11 +44,14 @@ class Mission:
         root: its first node, a py_trees behaviour.
         blackboard: the root entries, a mapping.
         origin: where it came from.
+        contracts: what must hold while it runs.
     """
 
     def __init__(self, name: str, root: Any, tracked: list[Tracked], board: Board, context: Context, origin: Origin = NOWHERE) -> None:
         self.name, self.root, self.origin = name, root, origin
+        self.contracts: tuple[Contract, ...] = ()
         self.blackboard = BoardView(board.root)
+        self._board = board
         self.ticks = 0
         self._tracked, self._context = tracked, context
         self._own_steps: dict[int, Callable[[], Result]] = {}
@@ -223,6 +227,10 @@ class Mission:
         for number, tracked in enumerate(self._tracked):
             if not tracked.node.children:
                 tracked.node.step = _watched(number, tracked.node.step, listen)
+
+    def contract_watch(self) -> ContractWatch | None:
+        """A watch over its contracts; None if it has none."""
+        return ContractWatch(self.contracts, self._board.root) if self.contracts else None
 
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""

@@ -13,7 +13,7 @@ from pluto_bt.trees.loader.version3 import SUBTREE_HINT
 from pluto_bt.trees.ports import Direction
 
 MAX_INCLUDES = 50  # levels
-ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include")
+ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include", "Contract")
 
 
 @dataclass(slots=True)
@@ -63,6 +63,7 @@ class MissionFiles:
     root: XmlElement | None = None
     is_whole: bool = True  # False if an included file could not be read: its trees are not known
     unnamed: int = 0
+    contracts: list[XmlElement] = field(default_factory=list)
     paths: list[str] = field(default_factory=list)  # of all files that were read, but those of the library
     _open: list[str] = field(default_factory=list)
     _read: set[str] = field(default_factory=set)
@@ -120,6 +121,8 @@ class MissionFiles:
         for element in root.children:
             if element.tag == "BehaviorTree":
                 self._take_tree(element, alone=len(root.children) == 1)
+            elif element.tag == "Contract":
+                self.contracts.append(element)
             elif element.tag not in ROOT_CHILDREN:
                 mend = did_you_mean(element.tag, ROOT_CHILDREN)
                 what = f"<{element.tag}> means nothing here and is ignored"

@@ -11,9 +11,11 @@ from typing import Any
 
 from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.trees.contracts import Contract
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
+from pluto_bt.trees.loader.contracts import read_contracts
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
 from pluto_bt.trees.loader.foreign import add_models
@@ -39,6 +41,7 @@ class Reading:
     unused: list[TreeSource] = field(default_factory=list)  # trees of the mission that the main tree does not use
     text: str = ""
     file: str = ""
+    contracts: Sequence[Contract] = ()
 
     @property
     def origin(self) -> Origin:
@@ -90,7 +93,9 @@ def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())
-    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
+    mission = Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
+    mission.contracts = tuple(reading.contracts)
+    return mission
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
@@ -120,6 +125,7 @@ def read_mission(
     if reading.files.root is None:
         return reading
     has_frame = bool(reading.files.trees) or not faults.has_errors
+    reading.contracts = read_contracts(reading.files.contracts, reading.report)
     StaticCheck(reading.files, reading.types, reading.report).run()
     if not has_frame:
         return reading
