@@ -7,7 +7,8 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
-from typing import Final
+from collections.abc import Mapping
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -30,7 +31,9 @@ MOTION_OUTPUTS: Final = {"reason": Port(str, False, "why it failed: a word of th
 
 
 class MotionLeaf(Leaf):
-    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`."""
+    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`; `PATIENCE_S` holds waits that differ from `WAITING`."""
+
+    PATIENCE_S: ClassVar[Mapping[str, float]] = {}
 
     def initialise(self) -> None:
         """Forget the last run; the command itself goes out in the first `update`."""
@@ -143,7 +146,7 @@ class MotionLeaf(Leaf):
         """Let the chain wait for a while with the same word."""
         if word != self._word:
             self._word, self._word_since_s = word, self._last_s
-        if word and self._last_s - self._word_since_s >= WAITING[word]:
+        if word and self._last_s - self._word_since_s >= self.PATIENCE_S.get(word, WAITING[word]):
             return self.fail(word, text or sentence(word))
         return None
 
