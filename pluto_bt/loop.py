@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState
-from pluto_bt.runtime.clock import NS, wait, wall_ns
+from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
@@ -55,6 +55,8 @@ class Loop:
         system = self._system
         system.executive.core.start(mission)
         system.start_parts()
+        if isinstance(system.clock, MonotonicClock):
+            system.clock.restart()  # starting the gateway's process takes its time
         system.scheduler.start()
         begun_ns = wall_ns()
         try:

@@ -13,20 +13,23 @@ from typing import Any
 
 from pluto_bt.behaviours.jobs import JobLeaf
 from pluto_bt.behaviours.look_around import WristTour
+from pluto_bt.behaviours.path_driver import PathDriver
 from pluto_bt.behaviours.paths import FindPath
+from pluto_bt.behaviours.plan_path import Planning
 from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
+from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
-from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
+from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock
 from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 
-USES_THE_MAP = (WristTour, FindPath)
+USES_THE_MAP = (WristTour, FindPath, Planning, PathDriver)
 
 
 class Runner:
@@ -37,8 +40,8 @@ class Runner:
         self.mission = mission
         with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
         with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
-        rehearsed = System(replace(options, trace_path=None, has_gateway=False, on_event=lambda event: None), VirtualClock())
-        rehearse(rehearsed, with_jobs, with_walls)
+        quiet = replace(options, trace_path=None, has_gateway=False, record=None, own_clock=None, on_event=lambda event: None)
+        rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
@@ -61,8 +64,12 @@ class Runner:
 
     def run(self) -> RunResult:
         """Run to the end and sum up."""
-        self.loop.run(self.mission)
-        self.result = self._sum_up()
+        try:
+            self.loop.run(self.mission)
+            self.result = self._sum_up()
+        finally:
+            if self.system.recorder is not None:
+                self.system.recorder.finish(self.result.as_json())
         return self.result
 
     def _sum_up(self) -> RunResult:
@@ -108,6 +115,7 @@ def make_runner(
     speed: float = 1.0,
     max_time_s: float | None = None,
     trace_path: str | Path | None = None,
+    record: str | Path | None = None,
     gateway: str | None = None,
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
@@ -118,18 +126,21 @@ def make_runner(
     Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
+    own_clock = StepClock() if realtime else None
     topics = TopicGlobals()
     of_file: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "file": str(inputs.mission_path)}
 
     def load(text: str | Path, **more: Any) -> Mission:
-        return load_mission(text, nodes, clock, topics=topics, **more)
+        return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
 
+    mission = load(inputs.mission_path, **of_file)
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
         trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
         gateway=parse_address(gateway) if gateway is not None else None, load=load, on_event=on_event, on_progress=on_progress,
+        record=None if record is None else record_request(Path(record), inputs, mission, realtime), own_clock=own_clock,
     )  # fmt: skip
-    runner = Runner(inputs, load(inputs.mission_path, **of_file), clock, options)
+    runner = Runner(inputs, mission, clock, options)
     topics.view = lambda: runner.system.robot.snapshot
     runner.mission.attach(runner.system.robot)
     return runner

@@ -170,7 +170,7 @@ def test_a_default_of_the_page_is_that_of_the_reader(tag: str, name: str, defaul
     for number, given in enumerate(("", f' {name}="{default}"')):
         path = tmp_path / f"{number}.xml"
         path.write_text(LEAST[tag].format(given), encoding="utf-8")
-        worlds.append(re.sub(r"Place\([^)]*\)", "", repr(replace(load_world(path, "w.xml"), file=""))))
+        worlds.append(re.sub(r"Place\([^)]*\)", "", repr(replace(load_world(path, "w.xml"), file="", files=()))))
     assert worlds[0] == worlds[1]
 
 

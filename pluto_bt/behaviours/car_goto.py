@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from py_trees.common import Status
 
@@ -19,6 +20,7 @@ class CarGoTo(SteppedLeaf):
     """Drives the car to `goal` (x;y, the same in car and world frame). Needs an accepted marker where the platform has the camera."""
 
     NEEDS_MARKER = True
+    WAY: ClassVar = "straight"
     INPUT_PORTS = {
         "goal": Port(tuple[float, float], True, "where to", unit="m"),
         "tolerance_m": Port(float, False, "nearer counts as reached", 1.0, unit="m", ge=0.01),

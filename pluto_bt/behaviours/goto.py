@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from py_trees.common import Status
 
@@ -16,6 +17,7 @@ from pluto_bt.skills.map_area import MapArea
 class GoTo(MotionLeaf):
     """Drives to `goal` in the frame of Localization/Pose. Fails with `stuck` when avoidance comes no nearer."""
 
+    WAY: ClassVar = "straight"
     INPUT_PORTS = {
         "goal": Port(tuple[float, float], True, "where to", unit="m"),
         "force": Port(float, False, "weight of the goal: above 1 avoidance is weaker, below 1 stronger", 1.0, ge=0.0),

@@ -6,7 +6,7 @@ Each posts one command; motion runs the library tree of the job, the same as for
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -82,6 +82,7 @@ class JobLeaf(MotionLeaf):
 class MoveTo(JobLeaf):
     """Drives to `goal` by ray following: along open paths in the middle of the street. Fails with `no-path` where there is none."""
 
+    WAY: ClassVar = "found"
     INPUT_PORTS = {"goal": Port(tuple[float, float], True, "where to", unit="m"), **MOTION_INPUTS}
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
@@ -133,6 +134,7 @@ class Resume(JobLeaf):
 class SetRectangle(MotionLeaf):
     """Sets the rectangle that limits MoveTo, Explore and Investigate: `b` to either side of `home`, `h` deep; b = 0 removes it."""
 
+    DRIVES: ClassVar = False
     INPUT_PORTS = {
         "rectangle": Port(tuple[float, float], True, '"b;h": half the width of the base, and the depth', unit="m", ge=0.0),
         "home": Port(tuple[float, float, float], False, '"x;y;theta_deg": middle of the base, looking into it', (0.0, 0.0, 0.0)),

@@ -17,7 +17,7 @@ from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING, sentence
 from pluto_bt.behaviours.robot import Robot, Ticket
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
-from pluto_bt.blackboard.messages import FVectorState, Pair
+from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
@@ -31,8 +31,16 @@ MOTION_OUTPUTS: Final = {"reason": Port(str, False, "why it failed: a word of th
 
 
 class MotionLeaf(Leaf):
-    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`; `PATIENCE_S` holds waits that differ from `WAITING`."""
+    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`.
 
+    Attributes:
+        DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
+        WAY: how the leaf comes to its port `goal`: "straight", or "found" if it looks for a way; "stays" if it stays where it is; "" else.
+        PATIENCE_S: seconds for which it lets the chain wait, where they differ from `WAITING`.
+    """
+
+    DRIVES: ClassVar = True
+    WAY: ClassVar = ""
     PATIENCE_S: ClassVar[Mapping[str, float]] = {}
 
     def initialise(self) -> None:
@@ -95,20 +103,28 @@ class MotionLeaf(Leaf):
         return self._last_s - self._start_s
 
     def post(
-        self, robot: Robot, kind: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0,
+        self,
+        robot: Robot,
+        kind: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
         force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> None:
         """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
         devices = robot.platform.devices
         has = (Avoidance.SONAR if devices.sonar is not None else 0) | (Avoidance.LASER if devices.laser is not None else 0)
-        flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
-        self._post_flags(robot, flags, position, velocity, tolerance_m, force)
-
-    def _post_flags(self, robot: Robot, flags: int, position: Pair, velocity: Pair, tolerance_m: float, force: float | tuple[float, ...]) -> None:
+        flags = 10 * (AVOIDANCE[self.avoidance()] & has) + kind
         if self._ticket is None or self._was_accepted:  # else the time without an answer goes on
             self._posted_s = self._last_s
         self._moves, self._was_accepted = True, False
-        self._ticket = robot.command(flags, position, velocity, tolerance_m, force)
+        self._ticket = robot.command(flags, position, velocity, tolerance_m, force, on_the_way=on_the_way)
+
+    def avoidance(self) -> str:
+        """Which sensors slow, stop and steer."""
+        return str(self.get_input("avoid"))
 
     def max_speed_mps(self, robot: Robot) -> float:
         """The port's limit, held within the platform's."""
@@ -134,7 +150,11 @@ class MotionLeaf(Leaf):
             return None
         if status.reason == "bad-command":
             return self.fail("bad-command", status.text)
-        return self._patience(_waiting_word(status), status.text)
+        word = _waiting_word(status)
+        trouble = self._patience(word, status.text)
+        if trouble is None and word == "bumper" and _is_released(robot):
+            self.resume(robot)  # the drive's latch opens with a new command
+        return trouble
 
     def _replaced(self, robot: Robot) -> Status:
         now = robot.newest("motion/status")
@@ -149,6 +169,12 @@ class MotionLeaf(Leaf):
         if word and self._last_s - self._word_since_s >= self.PATIENCE_S.get(word, WAITING[word]):
             return self.fail(word, text or sentence(word))
         return None
+
+
+def _is_released(robot: Robot) -> bool:
+    """True if the bumpers are known to be open."""
+    bumper = robot.newest("ATRV2/Bumper")
+    return isinstance(bumper, BumperState) and not (bumper.front or bumper.back or robot.is_stale("ATRV2/Bumper"))
 
 
 def _waiting_word(status: FVectorState) -> str:

@@ -37,6 +37,7 @@ REASONS: Final[dict[str, Reason]] = {
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
     "lost": Reason("the position has become too uncertain", "bring the robot where its markers or its map can be seen"),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
+    "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
     "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object"),
     "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map"),
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),

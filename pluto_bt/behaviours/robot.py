@@ -13,6 +13,7 @@ from pluto_bt.maps.world import World
 from pluto_bt.skills.sight import ScanView
 
 if TYPE_CHECKING:
+    from pluto_bt.behaviours.navigation import Navigation
     from pluto_bt.behaviours.surroundings import Surroundings
 
 
@@ -43,13 +44,29 @@ class Robot(Protocol):
     def surroundings(self) -> Surroundings:
         """The local map and what belongs to it."""
 
+    @property
+    def navigation(self) -> Navigation:
+        """Planning on the map, and what was seen in the way."""
+
     def scan_views(self) -> Sequence[ScanView]:
         """The laser scans that came since the last call, oldest first, each with the place it was taken from (dead reckoning)."""
 
     def command(
-        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> Ticket:
-        """Post a command to motion; within one tick the newest wins. `tolerance_m` 0 = avoidance's own."""
+        """Post a command to motion; within one tick the newest wins.
+
+        Args:
+            tolerance_m: 0 = avoidance's own.
+            on_the_way: the position is a point on the way to a goal, not one itself; pictures leave it out.
+        """
 
     def status(self, ticket: Ticket) -> FVectorState | None:
         """`motion/status`, but only while motion works on exactly this command; None before and after."""

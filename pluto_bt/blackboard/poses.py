@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from pluto_bt.blackboard.messages import ActuatorState, Message, Pair, Pose
-from pluto_bt.blackboard.store import Blackboard
+from pluto_bt.blackboard.store import Blackboard, Snapshot
 
 
 def blend_angle(a_rad: float, b_rad: float, share: float) -> float:
@@ -19,7 +19,7 @@ def share_between(before: Message, after: Message, stamp_s: float) -> float:
     return 0.0 if span_s <= 0.0 else (stamp_s - before.stamp_s) / span_s
 
 
-def pose_at(board: Blackboard, name: str, stamp_s: float) -> Pose | None:
+def pose_at(board: Blackboard | Snapshot, name: str, stamp_s: float) -> Pose | None:
     """The pose of a pose topic at `stamp_s`, interpolated; None if its history does not reach there."""
     pair = board.around(name, stamp_s)
     if pair is None:
@@ -34,7 +34,7 @@ def pose_at(board: Blackboard, name: str, stamp_s: float) -> Pose | None:
     return Pose(stamp_s, (x, y, z, theta, phi, psi), after.covariance, after.setter)
 
 
-def actuator_at(board: Blackboard, name: str, stamp_s: float) -> Pair | None:
+def actuator_at(board: Blackboard | Snapshot, name: str, stamp_s: float) -> Pair | None:
     """The two angles (rad) of an actuator topic such as the wrist's state at `stamp_s`, interpolated; None if its history does not reach there."""
     pair = board.around(name, stamp_s)
     if pair is None:

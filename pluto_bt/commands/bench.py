@@ -18,6 +18,7 @@ BENCHES = {
     "repeat": "runs with one seed: equal traces",
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",
+    "trips": "the car's trip2, 100 loops on 40 seeds",
     "jbot": "1000 feet out and back between trees: where the robot believes to be",
     "memory": "memory of an hour's simulated run",
 }

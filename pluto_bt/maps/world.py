@@ -206,7 +206,7 @@ class When:
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """Everything a world file says."""
+    """Everything a world file says; `files` are the paths of all that was read for it, itself first."""
 
     name: str
     file: str = ""
@@ -223,6 +223,7 @@ class World:
     terrains: tuple[Terrain, ...] = ()
     robot: RobotStart = field(default_factory=RobotStart)
     script: tuple[At | When, ...] = ()
+    files: tuple[str, ...] = field(default=(), compare=False)
 
     def bounds_m(self) -> tuple[float, float, float, float]:
         """(x_min, y_min, x_max, y_max) of everything drawn, for pictures and acceleration structures."""

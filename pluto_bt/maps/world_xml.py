@@ -73,7 +73,7 @@ class _WorldReading:
         for child in root.children:  # a script may stand before what it names
             if child.tag == "script":
                 self._found.script += read_script(child, self._ids, self._faults, ENOUGH_FAULTS)
-        return self._found.world(name, self._shown, seed)
+        return self._found.world(name, self._shown, seed, str(self._path))
 
     # ------------------------------------------------------------------ one of a kind
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import msgspec
+
 from pluto_bt.blackboard.codes import GotoStatus, LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LaserScan, Pose
 from pluto_bt.blackboard.poses import pose_at
@@ -18,6 +20,7 @@ from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.wall_parameters import WallParameters
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
+BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
 
 
 class Avoid:
@@ -66,6 +69,8 @@ class Avoid:
         has_it = letter is None and self._drive_has_it()  # a goto posts anew in each cycle, so ask before: drive tells of the last cycle's
         command = self._skill.step(now_s, self._senses(now_s, STILL if status is None else status.data))
         if command is not None:
+            if letter is None and self._sent is not None and status is not None and status.element[0] in BUMPERS:
+                command = msgspec.structs.replace(command, stamp_s=self._sent.stamp_s)  # no new order: that would open the bumper's latch
             self._drive.post("avoid", command)
             self._sent = command
         has_it = has_it or self._drive_has_it()

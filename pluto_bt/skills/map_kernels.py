@@ -123,7 +123,6 @@ def clearances(
 
     Two sweeps carry the distance from cell to cell, 1 across and √2 diagonally; at most 8 % more than the straight one.
     """
-    size = evidence.shape[0]
     rows, columns = i1 - i0, j1 - j0
     near = np.full((rows + 2, columns + 2), np.float32(most))
     diagonal = np.float32(1.4142)
@@ -141,8 +140,8 @@ def clearances(
         for b in range(columns, 0, -1):
             value = min(near[a, b], min(near[a + 1, b] + one, min(near[a, b + 1] + one, min(near[a + 1, b + 1], near[a + 1, b - 1]) + diagonal)))
             near[a, b] = value
-    first_i, last_i = 0 if i0 == 0 else keep, rows if i1 == size else rows - keep
-    first_j, last_j = 0 if j0 == 0 else keep, columns if j1 == size else columns - keep
+    first_i, last_i = 0 if i0 == 0 else keep, rows if i1 == evidence.shape[0] else rows - keep
+    first_j, last_j = 0 if j0 == 0 else keep, columns if j1 == evidence.shape[1] else columns - keep
     for a in range(first_i, last_i):
         for b in range(first_j, last_j):
             out[i0 + a, j0 + b] = near[a + 1, b + 1]

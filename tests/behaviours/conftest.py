@@ -47,7 +47,15 @@ class FakeRobot:
         self.resumes = 0
         self.says = FVectorState(0.0, (0.0, 0.0), (0, -1, 0, 0))
 
-    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+    def command(
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float = 1.0,
+        on_the_way: bool = False,
+    ) -> Ticket:
         command = ActuatorState(self.clock.now_s(), int(flags), position, velocity, (tolerance_m, 0.0), (force,))
         self.commands.append(command)
         return Ticket(command, self.refuse)

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import sim.worlds
+from pluto_bt.bench import trips
 from pluto_bt.scenario import Play, Run
 
 CORRIDOR = (Path(sim.worlds.__file__).parent / "corridor.xml").read_text(encoding="utf-8")
@@ -34,12 +35,20 @@ def trip(scenario: Play, world: Path, loops: int, seed: int) -> Run:
 
 
 @pytest.mark.parametrize("seed", [3, 8, 21])
-def test_the_trip_closes_its_loop_again_and_again(scenario: Play, corridor: Path, seed: int) -> None:
-    run = trip(scenario, corridor, 5, seed)
+def test_the_trip_closes_its_loop_again_and_again_with_a_gyro_that_drifts(seed: int) -> None:
+    """`pluto bench trips` has 40 seeds and 100 loops."""
+    run = trips.trip(seed, 5)
     assert (run.result, run.reason, run.collisions) == ("SUCCESS", "", 0), run.text
     assert run.blackboard["loops"] == 5
     assert run.min_clearance_m > 0.2
+    assert run.final_pose is not None and run.estimated_pose is not None
     assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.15
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_markers_may_hang_anywhere_and_point_anywhere(seed: int) -> None:
+    run = trips.trip(seed, 2, anywhere=True)
+    assert (run.result, run.collisions, run.blackboard["loops"]) == ("SUCCESS", 0, 2), run.text
 
 
 @pytest.mark.parametrize("where", MARKERS)
