@@ -181,6 +181,7 @@ class Avoid:
             self.verdict = Verdict(reason=reason, text=way.text)
             return self._post(0, 0.0, STILL, now_s)
         share, command = self._steered(now_s, senses, avoidance, points, way.speed_mps, way.turn_rad, self._goto.limits)
+        self._goto.note_share(now_s, share)
         if share == 0.0 and way.speed_mps < 0.0:
             self._goto.give_up_backing()
         return command
