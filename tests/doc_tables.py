@@ -231,6 +231,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "conditions": lambda: nodes(False, "Condition"),
     "controls": lambda: nodes(True, "Control"),
     "decorators": lambda: nodes(True, "Decorator"),
+    "nav2-controls": lambda: nodes(False, "Control", "Decorator"),
     "builtin-leaves": lambda: nodes(True, "Action", "Condition"),
     "motion-ports": motion_ports,
     "topics": topics,
