@@ -61,8 +61,8 @@ def test_a_tutorial_does_what_it_shows(scenario: Any, tutorial: Tutorial) -> Non
     ("name", "ports", "lines"),
     [("t09_choose", {"job": "water"}, ["leaf    fetch water: SUCCESS", "entry   job = water"]),
      ("t09_choose", {"job": "sing"}, ["says    I do not know that job", "leaf    no such job: SUCCESS", "entry   job = sing"]),
-     ("t11_visit_places", {"places": "3,3.5;0.45,9.7;3,4"}, ["leaf    Script::2: SUCCESS", "leaf    go: SUCCESS", "leaf    Script::6: SUCCESS",
-      "entry   missed = 1", "entry   place = 3,4", "entry   places = 3,3.5;0.45,9.7;3,4", "entry   visited = 2"])],
+     ("t11_visit_places", {"places": "4,3.5;10,4.2;6,3.5"}, ["leaf    Script::2: SUCCESS", "leaf    go: SUCCESS", "leaf    Script::6: SUCCESS",
+      "entry   missed = 1", "entry   place = 6,3.5", "entry   places = 4,3.5;10,4.2;6,3.5", "entry   visited = 2"])],
 )  # fmt: skip
 def test_a_tutorial_takes_other_inputs(scenario: Any, name: str, ports: dict[str, str], lines: list[str]) -> None:
     run = scenario("yard.xml", mission=f"{name}.xml", ports=ports)
