@@ -10,7 +10,7 @@ from pluto_bt.behaviours.ports import Port
 
 
 class FarthestView(Leaf):
-    """Finds the direction in which the way is free the farthest, and a place on it. Fails with `no-pose` if there is no scan, or no pose, for long."""
+    """Finds the direction in which the way is free the farthest, and a place there. Fails with `no-pose` without scan or pose for long."""
 
     INPUT_PORTS = {
         "margin_m": Port(float, False, "how far to stay away from what stands there", 1.5, unit="m", ge=0.0),

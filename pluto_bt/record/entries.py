@@ -17,6 +17,7 @@ class Run(msgspec.Struct, kw_only=True):
     Attributes:
         hashes: SHA-256 of each attachment, and `parameters`: of the platform file with all settings.
         mode: lockstep or threads.
+        resumed: what the mission remembered of a run that was cut off.
         settings: of `--set`; `ports`, `tree`, `plugins`, `start`, `seed` as given.
     """
 
@@ -33,6 +34,7 @@ class Run(msgspec.Struct, kw_only=True):
     settings: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
     hashes: dict[str, str] = {}
+    resumed: dict[str, Any] = {}
 
 
 class NodeRow(msgspec.Struct, frozen=True, gc=False):

@@ -189,6 +189,18 @@ def test_a_goto_goes_on_when_motion_alone_is_stopped(robot: Make) -> None:
     assert r.run(30.0, lambda: r.status_of("avoid").element == (0, 1))
 
 
+def test_what_was_posted_while_avoidance_was_stopped_is_dropped_and_not_shown_as_running(robot: Make) -> None:
+    r = robot()
+    r.module("avoid", False)
+    r.order(32, (8.0, 0.0), (0.5, 0.0))
+    r.run(0.5)
+    assert r.status.element == (-10, -10, 0, 0)
+    r.module("avoid", True)
+    r.run(1.0)
+    assert r.status.element == (0, 0, 0, 0)
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+
+
 # ------------------------------------------------------------------ every status code by name
 
 

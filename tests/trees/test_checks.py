@@ -313,3 +313,13 @@ FOREIGN = [
 def test_nodes_of_other_systems_are_known_by_their_model(body: str, faults: list[str], tmp_path: Any) -> None:
     (tmp_path / "models.xml").write_text(MODELS)
     assert told(body, models=[tmp_path / "models.xml"]) == faults
+
+
+def test_a_model_of_another_node_of_the_same_name_goes_before_ours_but_not_before_the_formats(tmp_path: Any) -> None:
+    (tmp_path / "models.xml").write_text('''<root BTCPP_format="4"><TreeNodesModel><Action ID="GoTo"><input_port name="pose"/></Action>
+      <Action ID="Say"><input_port name="text"/></Action><Action ID="Sleep"><input_port name="hours"/></Action></TreeNodesModel></root>''')
+    models = [tmp_path / "models.xml"]
+    assert told('<GoTo pose="a"/>', models=models) == []
+    assert told('<GoTo pose="a"/>') == ["2:1 error missing-port", "2:7 error unknown-port"]
+    assert told("<Say/>", models=models) == told("<Say/>") == ["2:1 error missing-port"]
+    assert told('<Sleep hours="8"/>', models=models) == ["2:1 error missing-port", "2:8 error unknown-port"]

@@ -16,7 +16,7 @@ from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
-from pluto_bt.trees.loader.foreign import foreign_type
+from pluto_bt.trees.loader.foreign import add_models
 from pluto_bt.trees.loader.inputs import set_inputs
 from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
@@ -161,8 +161,7 @@ def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, mo
     for path in models:
         reading.files.read_models(Path(path), str(path))
     if models:
-        for model in reading.files.node_models.values():
-            reading.types.setdefault(model.name, foreign_type(model))
+        add_models(reading.types, reading.files.node_models.values())
 
 
 def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
