@@ -29,6 +29,7 @@ from pluto_bt.trees.ports import PortModel
 from tests.doc_texts import RUN_REASONS, STATUS_MEANINGS
 from tests.fault_cases import CASES, GOES_ON
 from tests.safety_cases import CAUSES
+from tests.tutorials import read_tutorials
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md")
@@ -238,6 +239,11 @@ def modules() -> str:
     return table(("module", "group (thread)", "every", "woken by", "needs", "critical", "only with the device", "budget a step"), rows)
 
 
+def tutorials() -> str:
+    """The tutorial missions, in order."""
+    return table(("run it", "new idea"), ((f"`{one.command}`", one.idea) for one in read_tutorials()))
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "actions": lambda: nodes(False, "Action"),
     "conditions": lambda: nodes(False, "Condition"),
@@ -263,6 +269,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "requests": requests,
     "shell": shell,
     "modules": modules,
+    "tutorials": tutorials,
 }
 
 

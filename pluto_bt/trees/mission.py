@@ -142,6 +142,10 @@ class Mission:
         skipped, now_s = self._skipped(), self._context.clock.now_s()
         return [tracked.state(tracked.status(skipped), now_s) for tracked in self._tracked]
 
+    def now_s(self) -> float:
+        """The time of its clock."""
+        return self._context.clock.now_s()
+
     def active_leaf(self) -> str:
         """The path of the deepest RUNNING node, the first one where several are; "" if none is."""
         best: Tracked | None = None
