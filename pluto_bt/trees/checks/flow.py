@@ -52,8 +52,8 @@ class Flow:
         self._visit(nodes[0], certain=True)
 
     def run_beside(self, scripts: Iterable[XmlAttribute]) -> None:
-        """Check scripts that look at the root entries all the time, after `run`: what they name must be written some time."""
-        root = self._board.root
+        """Warn of scripts that look at the root entries all the time, where they name what is never written; to be called after `run`."""
+        root, self._is_closed = self._board.root, False
         for use in (use for attribute in scripts for use in script_uses(attribute)):
             home = self._home(root, use.key)
             if home not in self._writers and not self._is_given(root, use.key):

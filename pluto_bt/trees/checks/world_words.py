@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from pluto_bt.behaviours.destinations import Destination, Destinations
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
@@ -12,9 +14,13 @@ from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.python_types import kind_of_type
 
 
-def check_world_words(root: Plan, world: World, map_: World) -> tuple[Fault, ...]:
-    """Faults of names: areas and goals of `map_` that the mission asks for, leaves of the mission that `world` names."""
+def check_world_words(root: Plan, world: World, map_: World, *, may_fail: bool = False) -> tuple[Fault, ...]:
+    """Faults of names: areas and goals of `map_` that the mission asks for, leaves of the mission that `world` names.
+
+    With `may_fail` a name that the map does not have is a warning: the leaf will fail with a reason, and the mission may be ready for that.
+    """
     faults, nodes = Faults(), root.walk()
+    words = Faults()
     told: set[int] = set()
     for plan in nodes:
         ports = plan.node_type.ports.values() if plan.node_type is not None else ()
@@ -22,7 +28,8 @@ def check_world_words(root: Plan, world: World, map_: World) -> tuple[Fault, ...
             attribute = plan.element.attributes.get(port.name)
             if attribute is not None and key_of(port.name, attribute.value) is None and id(attribute) not in told:
                 told.add(id(attribute))
-                _check_literal(attribute, port, map_, faults)
+                _check_literal(attribute, port, map_, words)
+    faults.extend(replace(fault, severity="warning") if may_fail else fault for fault in words.in_order())
     _check_leaves(nodes, world, faults)
     return faults.in_order()
 
