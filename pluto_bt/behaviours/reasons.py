@@ -19,6 +19,8 @@ class Reason(NamedTuple):
 REASONS: Final[dict[str, Reason]] = {
     # ended by the run itself, not by a leaf: max-time, interrupted, and those of supervision
     "base-lost": Reason("the base delivers nothing any more", "check the base, its cable and its power"),
+    "contract": Reason("a contract of the mission was broken", "see which one in the message, and `pluto replay FILE --contracts`"),
+    "held": Reason("a run that was cut off waits for an operator", "`pluto shell resume`, or start it with --resume resume"),
     "hung": Reason("a leaf or a module did not return", "look at the name in the message; a leaf's update() must return at once"),
     "interrupted": Reason("the run was ended from the keyboard", "start it again"),
     "leaf-error": Reason("a leaf raised an exception or returned no status", "see the node, file and line in the message"),
@@ -57,12 +59,13 @@ REASONS: Final[dict[str, Reason]] = {
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
     "wall-lost": Reason("the wall that was followed is not there any more", "look what became of it, then start again near a wall"),
+    "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
 
 WAITING: Final[dict[str, float]] = {
     # word → seconds for which a motion leaf lets the chain wait before it fails with that word
-    "bumper": 1.0,
+    "bumper": 4.0,  # who bumped into the robot goes on
     "laser-fatal": 30.0,  # the reboot takes about 20 s
     "laser-stale": 5.0,
     "sonar-stale": 5.0,

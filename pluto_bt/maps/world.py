@@ -233,7 +233,7 @@ class World:
     terrains: tuple[Terrain, ...] = ()
     robot: RobotStart = field(default_factory=RobotStart)
     script: tuple[At | When, ...] = ()
-    files: tuple[str, ...] = field(default=(), compare=False)
+    files: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
     def bounds_m(self) -> tuple[float, float, float, float]:
         """(x_min, y_min, x_max, y_max) of everything drawn, for pictures and acceleration structures."""

@@ -80,8 +80,8 @@ class Filter:
         """Carried to another place, what was seen round the robot is not there."""
         check = self._check()
         is_lost = check is not None and check.reason == reasons.LOST
-        if is_lost and not self._was_lost and self.skill.space is not None:
-            self.skill.space.forget()
+        if is_lost and not self._was_lost:
+            self.skill.forget()
         self._was_lost = is_lost
 
     def _held(self, letter: Letter | None, now_s: float) -> Verdict | None:

@@ -12,8 +12,10 @@ import msgspec
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
 from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.gateway.replies import Cause
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
+from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.skills.reasons import STOPPED
 from pluto_bt.trees import Mission, MissionError
@@ -40,6 +42,7 @@ class GatewayPort:
         self._loaded: Mission | None = None
         self._errands: dict[str, Errand] = {}
         self._latch = context.latch
+        self.why_watch = WhyWatch(context)
 
     @property
     def name(self) -> str:
@@ -173,6 +176,10 @@ class GatewayPort:
 
         active = self._system.executive.core.active
         return "" if active is None else dump(active.mission, format)
+
+    def why(self, at_s: float | None) -> tuple[bool, Sequence[Cause]]:
+        """The chain of causes."""
+        return self.why_watch.answer(at_s, self.now_s())
 
     def modules(self) -> ModulesState:
         """Every module of the run."""

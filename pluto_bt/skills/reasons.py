@@ -26,6 +26,7 @@ STOPPED = "stopped"
 STUCK = "stuck"
 UNSEEN = "unseen"
 WALL_LOST = "wall-lost"
+WALKER = "walker"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
@@ -52,4 +53,5 @@ CHAIN_REASONS: dict[str, str] = {
     STUCK: "goto makes no progress towards the goal, or wall follow none along the wall",
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
     WALL_LOST: "the wall that was followed is not there any more",
+    WALKER: "somebody walks near the way, or may do so out of view; the robot creeps there, or waits",
 }
