@@ -91,8 +91,8 @@ class Follow:
                 turn_rad = math.remainder(math.atan2(self.target.vy_mps, self.target.vx_mps) - robot[2], math.tau)
             return Aim((x, y), 0.0, turn_rad, away_m)
         share = too_far_m / away_m
-        flees_mps = max(0.0, (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m)
-        speed_mps = min(self._most_mps, flees_mps + CLOSE_UP_PER_S * too_far_m)
+        flees_mps = (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m if self.state(now_s) is Search.SEEN else 0.0
+        speed_mps = max(0.0, min(self._most_mps, flees_mps + CLOSE_UP_PER_S * too_far_m))  # who comes back is awaited standing
         return Aim((robot[0] + share * dx, robot[1] + share * dy), speed_mps, turn_rad, away_m)
 
     def _choose(self, robot: Planar, now_s: float) -> None:
