@@ -32,7 +32,7 @@ from pluto_bt.record.story import ended
 from pluto_bt.runtime.clock import StepClock, VirtualClock
 from pluto_bt.skills.jobs import Job
 from pluto_bt.source import Faults, PlutoError
-from pluto_bt.trees import Mission, load_mission
+from pluto_bt.trees import Mission, load_mission, memory
 from pluto_bt.trees.executive import Activity, Executive
 
 
@@ -107,7 +107,8 @@ class Playback:
         """Every difference, tick by tick; the first one is the one that counts."""
         for number in range(len(self._box)):
             tick = self._box.tick(number)
-            yield from self._step(tick)
+            if not tick.is_end:
+                yield from self._step(tick)
             if self._feed.is_at_its_end:
                 return
             self.ticks += 1
@@ -141,8 +142,8 @@ class Playback:
 
     def _order(self, verb: str, run: int, text: str) -> None:
         core = self._core
-        if verb == "start":
-            core.start(self._mission(run))
+        if verb in ("start", "start-held"):
+            core.start(self._mission(run), text)
         elif verb == "start-errand":
             core.start_errand(self._mission(run))
         elif verb == "end-errand" and core.errand is not None:
@@ -178,6 +179,8 @@ class Playback:
         elif self._started == 1:
             given: dict[str, Any] = {"tree": self._box.run.tree, "ports": self._box.run.ports}
             mission = self._load(self._main, **given)
+            if self._box.run.resumed:
+                memory.give_back(mission, self._box.run.resumed)
         else:
             shipped = resources.files("missions") / Path(tree.file).name  # the gateway starts shipped missions by name
             mission = self._load(str(shipped))

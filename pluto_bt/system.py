@@ -221,10 +221,10 @@ class System:
         for link in ("base", "filter", "drive", "avoid", "motion"):
             self.inboxes[link].stop(source, now_s)
 
-    def operator_stop(self, source: str) -> None:
-        """Zero velocity at once, latched until somebody commands anew; a running mission pauses. Thread-safe."""
+    def operator_stop(self, source: str, why: str = OPERATOR_STOP) -> None:
+        """Zero velocity at once, latched until somebody commands anew; a running mission pauses for the reason `why`. Thread-safe."""
         self.latch.set(OPERATOR_STOP, f"{source} stopped the robot")
-        self.executive.core.pause(OPERATOR_STOP)  # before the links are stopped, so that no tick takes the stop for a failure
+        self.executive.core.pause(why)  # before the links are stopped, so that no tick takes the stop for a failure
         self.stop_robot(source)
 
     def operator_resume(self) -> None:

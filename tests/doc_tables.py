@@ -27,7 +27,9 @@ from pluto_bt.trees.dump.palette import ARROWS, default_text
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.ports import PortModel
 from tests.doc_texts import RUN_REASONS, STATUS_MEANINGS
+from tests.fault_cases import CASES, GOES_ON
 from tests.safety_cases import CAUSES
+from tests.tutorials import read_tutorials
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md")
@@ -44,10 +46,14 @@ def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 # ---------------------------------------------------------------------- missions
 
 
-def _types(builtin: bool, *kinds: str) -> list[NodeType]:
-    found = [node for node in node_types().values() if node.builtin is builtin and node.kind in kinds]
+def _types(builtin: bool, *kinds: str, of_nav2: bool = False) -> list[NodeType]:
+    found = [node for node in node_types().values() if node.builtin is builtin and node.kind in kinds and _is_of_nav2(node) is of_nav2]
     of_others = [node for node in found if not builtin and not node.make.__module__.startswith("pluto_bt.")]  # those of other tests
     return sorted((node for node in found if node not in of_others), key=lambda node: node.name)
+
+
+def _is_of_nav2(node: NodeType) -> bool:
+    return node.make.__module__.startswith(("pluto_bt.behaviours.nav2", "pluto_bt.trees.nav2"))
 
 
 def _port(port: PortModel) -> str:
@@ -63,9 +69,16 @@ def _ports(node: NodeType) -> str:
     return "<br>".join([*own, "+ *motion ports*"] if is_motion else own) or "–"
 
 
-def nodes(builtin: bool, *kinds: str) -> str:
+def nodes(builtin: bool, *kinds: str, of_nav2: bool = False) -> str:
     """Node, ports, what it does."""
-    return table(("node", "ports", "what it does"), ((f"`{node.name}`", _ports(node), node.description) for node in _types(builtin, *kinds)))
+    types = _types(builtin, *kinds, of_nav2=of_nav2)
+    return table(("node", "ports", "what it does"), ((f"`{node.name}`", _ports(node), node.description) for node in types if not node.missing))
+
+
+def missing_nodes() -> str:
+    """Nodes of Nav2 that are known by name alone."""
+    types = _types(False, "Action", "Condition", of_nav2=True)
+    return table(("node", "what is missing"), ((f"`{node.name}`", node.missing) for node in types if node.missing))
 
 
 def motion_ports() -> str:
@@ -161,6 +174,12 @@ def stops() -> str:
     return table(("cause", "noticed by", "at rest within", "measured", "status", "if it does not clear, the run ends", "clears"), rows)
 
 
+def fault_cases() -> str:
+    """What breaks, what becomes of the mission, how soon zero velocity is commanded."""
+    rows = ((case.name, case.how, "–" if case.zero_within_s == GOES_ON else f"{case.zero_within_s:g} s", case.outcome) for case in CASES)
+    return table(("fault, for ever unless said", "noticed by, and then", "zero within", "the run ends"), rows)
+
+
 def reasons() -> str:
     """The reasons of leaves."""
     of_leaves = {word: reason for word, reason in REASONS.items() if word not in RUN_REASONS or word in WAITING}
@@ -220,19 +239,29 @@ def modules() -> str:
     return table(("module", "group (thread)", "every", "woken by", "needs", "critical", "only with the device", "budget a step"), rows)
 
 
+def tutorials() -> str:
+    """The tutorial missions, in order."""
+    return table(("run it", "new idea"), ((f"`{one.command}`", one.idea) for one in read_tutorials()))
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "actions": lambda: nodes(False, "Action"),
     "conditions": lambda: nodes(False, "Condition"),
     "controls": lambda: nodes(True, "Control"),
     "decorators": lambda: nodes(True, "Decorator"),
     "builtin-leaves": lambda: nodes(True, "Action", "Condition"),
+    "nav2-controls": lambda: nodes(False, "Control", "Decorator", of_nav2=True),
+    "nav2-actions": lambda: nodes(False, "Action", of_nav2=True),
+    "nav2-conditions": lambda: nodes(False, "Condition", of_nav2=True),
+    "nav2-missing": missing_nodes,
     "motion-ports": motion_ports,
     "topics": topics,
-    "faults": faults,
+    "fault-cases": fault_cases,
     "fault-units": fault_units,
     "parameters": parameters,
     "shipped": shipped,
     "stops": stops,
+    "faults": faults,
     "reasons": reasons,
     "chain-reasons": chain_reasons,
     "run-reasons": run_reasons,
@@ -240,6 +269,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "requests": requests,
     "shell": shell,
     "modules": modules,
+    "tutorials": tutorials,
 }
 
 

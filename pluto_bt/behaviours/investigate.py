@@ -10,7 +10,7 @@ from py_trees.common import Status
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, pose_doubt
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import Pair
@@ -49,7 +49,8 @@ class FindObject(Leaf):
             return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            return self.fail("no-pose", "it is not known where the robot is")
+            doubt = pose_doubt(robot)
+            return self.fail(doubt.reason or "no-pose", doubt.text or "it is not known where the robot is")
         things = things_around(around.map, around.robot)
         inside = [thing for thing in things if self._fits(robot, around, thing)]
         for thing in inside:

@@ -18,10 +18,11 @@ FRAME: Final = "map"
 class MapPath:
     """Poses (n, 3): x m, y m, theta rad in the map, read-only. `ends_turned` = the last heading is to be taken up, else it only shows the way.
 
-    Paths are equal if their poses are. In text as Nav2's: `stamp;frame`, then `stamp;frame;x;y;z;qx;qy;qz;qw` for each pose; or `json:`.
+    Paths are equal if their poses are. In text points, `1,2;3,4`; or as Nav2's: `stamp;frame`, then `stamp;frame;x;y;z;qx;qy;qz;qw` for each
+    pose; or `json:`.
     """
 
-    TEXT_FORM: ClassVar = "{key} of a path"
+    TEXT_FORM: ClassVar = "points x,y with ';' between, or {key} of a path"
     ANY_ENTRY: ClassVar = True
     __slots__ = ("ends_turned", "frame", "poses", "stamp_ns")
 
@@ -48,11 +49,13 @@ class MapPath:
 
     @classmethod
     def from_text(cls, text: str) -> MapPath:
-        """Read Nav2's text. Raises ValueError."""
+        """Read any of the forms. Raises ValueError."""
         if text.startswith("json:"):
             tree = read_json(text)
             poses: list[tuple[int, str, float, float, float]] = [pose_of_json(one) for one in _listed(member(tree, "poses"))]
             stamp_ns, frame = header_of(tree)
+        elif "," in text:
+            return cls.along(np.array([_point(part) for part in text.split(";") if part.strip()]))
         else:
             parts = text.split(";")
             if len(parts) % POSE_PARTS != 2:
@@ -117,6 +120,13 @@ class MapPath:
 
     def __repr__(self) -> str:
         return f"<path of {len(self)} poses, {self.length_m:.1f} m>"
+
+
+def _point(text: str) -> tuple[float, float]:
+    place = Destination.from_text(text)
+    if place.name or place.theta_deg is not None:
+        raise ValueError(f'"{text}" is no point x,y')
+    return place.x_m, place.y_m
 
 
 def _listed(value: Any) -> Iterable[Any]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -29,6 +29,7 @@ class NavigateTo(PathDriver):
     Fails with `no-path` if there is no way, or none any more; with `stuck` if it does not get on though there is one.
     """
 
+    WAY: ClassVar = "planned"
     INPUT_PORTS = {"goal": GOAL, "tolerance_m": TOLERANCE, **MOTION_INPUTS}
     OUTPUT_PORTS = {"path": Port(MapPath, False, "the way it follows"), **MOTION_OUTPUTS}
 

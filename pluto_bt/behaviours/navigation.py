@@ -68,12 +68,12 @@ class Navigation:
         planner.map.lay_over(self.seen())
         points = planner.plan(start[:2], goal, tolerance_m)
         if points is None:
-            return self._why(planner, start[:2], goal)
+            return self._why(planner, start[:2], goal, tolerance_m)
         return Plan(MapPath.along(points, goal_rad, round(now_s * 1e9)))
 
-    def _why(self, planner: Planner, start: Point, goal: Point) -> Plan:
+    def _why(self, planner: Planner, start: Point, goal: Point, tolerance_m: float) -> Plan:
         room_m = float(planner.map.clearances_m(np.array([goal]))[0])
-        if room_m < self._outline.side_m:
+        if planner.standable(goal, tolerance_m) is None:
             text = f"there is no room for the robot at the goal {goal[0]:.2f};{goal[1]:.2f}: {room_m:.2f} m to the next obstacle"
             return Plan(None, "no-path", text, GOAL_OCCUPIED)
         text = f"the map has no way from {start[0]:.2f};{start[1]:.2f} to {goal[0]:.2f};{goal[1]:.2f} that is {2 * self.least_m:.2f} m wide"

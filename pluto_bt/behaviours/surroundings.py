@@ -10,12 +10,12 @@ import math
 
 import msgspec
 
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
-from pluto_bt.skills.local_map import CELLS_OF_A_PATH, LocalMap
+from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.rays import Openings
@@ -40,6 +40,8 @@ class Surroundings:
         self.fine: LocalMap | None = None  # the same on smaller cells, for who passes through doors; kept once `look_finely` was called
         self._laser = platform.devices.laser
         self._is_empty = True
+        self.robot: Planar = (0.0, 0.0, 0.0)
+        self.believed: Planar = (0.0, 0.0, 0.0)
         self._refreshed_s = -math.inf
         self.begin(None)
 
@@ -71,14 +73,14 @@ class Surroundings:
     def forget(self) -> None:
         """What was seen is not known any more; what was explored is."""
         for grid in self._grids():
-            covered = grid.covered
-            grid.forget(self.robot if not self._is_empty else (0.0, 0.0, 0.0))
-            grid.covered = covered
+            grid.erase(self.robot[:2], 4.0 * CELLS * grid.cell_m, inside=True)
+        self._refreshed_s = -math.inf
 
     def forget_square(self, middle: Pair, side_m: float, *, inside: bool) -> None:
         """What was seen in a square round a point (dead reckoning), or outside of it, is not known any more."""
         for grid in self._grids():
             grid.erase(middle, side_m, inside=inside)
+        self._refreshed_s = -math.inf
 
     @property
     def is_empty(self) -> bool:
@@ -91,10 +93,10 @@ class Surroundings:
     def look(self, robot: Robot, now_s: float) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is."""
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
-        if not isinstance(dead, Pose) or not isinstance(believed, Pose) or robot.is_stale("Localization/Pose"):
+        if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
             return False
-        self.robot: Planar = (dead.pose[0], dead.pose[1], dead.pose[3])
-        self.believed: Planar = (believed.pose[0], believed.pose[1], believed.pose[3])
+        self.robot = (dead.pose[0], dead.pose[1], dead.pose[3])
+        self.believed = (believed.pose[0], believed.pose[1], believed.pose[3])
         if self._is_empty:
             for grid in self._grids():
                 grid.forget(self.robot)

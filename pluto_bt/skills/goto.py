@@ -18,6 +18,7 @@ from pluto_bt.skills.steering import ROOM_M, Steer, Steering
 from pluto_bt.skills.sweep import first_contact
 
 PROGRESS_M = 0.1  # coming nearer by less is no progress
+PROGRESS_RAD = 0.1  # nor is turning to the way by less
 ARRIVAL_MPS = 0.08  # slowest approach
 COMFORT_SHARE = 0.5  # of the deceleration is used when nothing presses
 MOVED_M, MOVED_RAD = 0.01, 0.02  # less is standing still, whatever the wheels are told
@@ -62,7 +63,7 @@ class Goto:
         self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
         self._tolerance_m = command.acceleration[0] if command.acceleration[0] > 0.0 else p.goto_tolerance_m
         self.status = GotoStatus.RUNNING
-        self._best_m = math.inf
+        self._best_m = self._best_rad = math.inf
         self._progress_s = self._last_s = now_s
         if follows_on:
             return
@@ -99,6 +100,8 @@ class Goto:
         if self._back_from is not None and self._goes_on_backing(now_s, odometry):
             return Way(-BACKING_MPS, 0.0, self.status)
         steering = self._steered(points, goal_rad, distance_m, odometry[2])
+        if abs(steering.heading_rad) < self._best_rad - PROGRESS_RAD:  # a turn may take long among people
+            self._best_rad, self._progress_s = abs(steering.heading_rad), now_s
         if self._is_wedged(steering, now_s, odometry):
             return Way(-BACKING_MPS, 0.0, self.status)
         return Way(self._speed_mps(steering, distance_m), steering.heading_rad, self.status)
@@ -114,7 +117,7 @@ class Goto:
 
     def _note(self, now_s: float, distance_m: float, odometry: Planar) -> None:
         if distance_m < self._best_m - PROGRESS_M:
-            self._best_m, self._progress_s = distance_m, now_s
+            self._best_m, self._best_rad, self._progress_s = distance_m, math.inf, now_s
         stood = self._stood
         if stood is None or math.dist(stood[:2], odometry[:2]) > MOVED_M or abs(wrap_angle(odometry[2] - stood[2])) > MOVED_RAD:
             self._stood, self._moved_s = odometry, now_s

@@ -96,11 +96,8 @@ class PathFollowing:
     def _is_near(self, robot: Planar, stretch: Array, last: Array) -> bool:
         """True if the straight way to `last` leaves no point between farther aside than its room allows."""
         dx, dy = last[0] - robot[0], last[1] - robot[1]
-        length_m = math.hypot(dx, dy)
-        if length_m < 1e-6:
-            return True
         x, y = stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]
-        share = np.clip((dx * x + dy * y) / (length_m * length_m), 0.0, 1.0)  # of the way there, where it is nearest to each point
+        share = np.clip((dx * x + dy * y) / max(dx * dx + dy * dy, 1e-12), 0.0, 1.0)  # of the way there, where it is nearest to each point
         aside = np.hypot(x - share * dx, y - share * dy)
         return bool((aside <= self._cut_m[self.place : self.place + len(stretch)]).all())
 

@@ -14,7 +14,7 @@ from pluto_bt.skills.way_kernels import search
 
 Point = tuple[float, float]
 RELAXED_M = 0.8  # so near to its start and its goal a way may be tighter
-LEAST_REACH_CELLS = 1.0
+REACH_CELLS = 1.0
 STEP_M = 0.1  # between the points of a way
 GREED = 1.08  # steps go along the grid and its diagonals, which is up to 8 % longer than straight
 _NO_RECTANGLE = np.zeros(7)
@@ -26,6 +26,7 @@ class Planner:
     def __init__(self, plan_map: PlanMap, outline: Outline, parameters: PlanParameters) -> None:
         self.map = plan_map
         cell_m, count = plan_map.frame.cell_m, plan_map.cells.size
+        self._side_m = outline.side_m
         self.least_m = outline.side_m + parameters.gap_m  # from the middle of the robot to what stands
         self._half = (outline.side_m + max(parameters.room_m, parameters.gap_m + 0.05)) / cell_m
         self._wide = max((outline.side_m + parameters.wide_m) / cell_m, self._half + 1.0)
@@ -35,26 +36,34 @@ class Planner:
         self._places = np.zeros(2 * count, dtype=np.int32)
 
     def plan(self, start: Point, goal: Point, tolerance_m: float) -> Array | None:
-        """Points (n, 2) of the map, `STEP_M` apart, from the start to the goal or to within `tolerance_m` of it; None if there is no way.
-
-        Both ends must lie on the map.
+        """Points (n, 2) of the map, `STEP_M` apart, from the start to the goal, or where it is too tight for the robot to a place within
+        `tolerance_m` of it; None if there is no way. Both ends must lie on the map.
         """
-        frame = self.map.frame
-        least = self.least_m / frame.cell_m
-        goal_cell = self.map.cell(*goal)
-        is_open = float(self.map.clearance[goal_cell]) > 1.0
-        reach = LEAST_REACH_CELLS if is_open else max(tolerance_m / frame.cell_m, LEAST_REACH_CELLS)
+        cell_m, place = self.map.frame.cell_m, self.standable(goal, tolerance_m)
+        if place is None:
+            return None
         end = search(
-            self.map.cells, self.map.cells, self.map.clearance, self.map.cell(*start), goal_cell, reach, _NO_RECTANGLE, least, self._half,
-            self._wide, RELAXED_M / frame.cell_m, 0.0, GREED, self._cost, self._came, self._keys, self._places,
+            self.map.cells, self.map.cells, self.map.clearance, self.map.cell(*start), self.map.cell(*place), REACH_CELLS, _NO_RECTANGLE,
+            self.least_m / cell_m, self._half, self._wide, RELAXED_M / cell_m, 0.0, GREED, self._cost, self._came, self._keys, self._places,
         )  # fmt: skip
         if end < 0:
             return None
         rough = self._traced(end)
-        rough[0] = start
-        if is_open:
-            rough[-1] = goal
+        rough[0], rough[-1] = start, place
         return self._pleasant(rough)
+
+    def standable(self, goal: Point, tolerance_m: float) -> Point | None:
+        """The place nearest to a goal, at most `tolerance_m` away, where the robot has room to stand; None if there is none."""
+        frame = self.map.frame
+        if self.map.clearances_m(np.array([goal]))[0] >= self._side_m:
+            return goal
+        reach = math.floor(tolerance_m / frame.cell_m)
+        offsets = np.arange(-reach, reach + 1) * frame.cell_m
+        around = np.array(goal) + np.array([(x, y) for x in offsets for y in offsets])
+        away_m = np.hypot(*(around - goal).T)
+        away_m[(self.map.clearances_m(around) < self._side_m) | (away_m > tolerance_m)] = np.inf
+        best = int(np.argmin(away_m))
+        return (float(around[best, 0]), float(around[best, 1])) if math.isfinite(away_m[best]) else None
 
     def _traced(self, end: int) -> Array:
         places = [end]

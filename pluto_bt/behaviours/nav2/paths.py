@@ -159,7 +159,7 @@ class PathCheck(Leaf):
         if not robot.surroundings.look(robot, self.now_s()):
             return []
         first = path.nearest(*robot.surroundings.believed[:2])
-        reach_m = float(value_of(self, "max_lookahead_distance", -1.0))
+        reach_m = float(self.get_input("max_lookahead_distance")) if "max_lookahead_distance" in self.input_ports() else -1.0
         last = first + first_beyond(np.hypot(*np.diff(path.points[first:], axis=0).T), reach_m) if reach_m >= 0.0 else len(path)
         places = robot.navigation.blocked_places(path.points[first:last])
         return [path.destination(first + int(place)) for place in places]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, ClassVar
 
 from pluto_bt.behaviours.map_path import MapPath
@@ -13,6 +14,7 @@ from pluto_bt.trees.scopes import EMPTY, MissingValue, Scope
 from pluto_bt.trees.values import BOOL, DOUBLE
 
 NO_PATH = MapPath.empty()
+SAME_M = 1e-3  # goals so near to each other are one
 
 
 class SingleTrigger(DecoratorNode):
@@ -93,7 +95,7 @@ class PathLongerOnApproach(DecoratorNode):
 
     def _is_longer(self, path: MapPath) -> bool:
         before = self.before
-        if len(path) == 0 or len(before) == 0 or len(path) == len(before) or path.end != before.end:
+        if len(path) == 0 or len(before) == 0 or len(path) == len(before) or math.dist(path.end, before.end) > SAME_M:
             return False
         near_m, factor = float(self.read("prox_len")), float(self.read("length_factor"))
         return before.length_m < near_m and path.length_m > factor * before.length_m
