@@ -155,7 +155,7 @@ def test_a_side_effect_that_had_begun_when_the_crash_came_is_not_repeated(folder
     keeper = runner.system.executive.keeper
     assert keeper is not None
 
-    def crash(now_s: float, ticks: int) -> None:
+    def crash(now_s: float, ticks: int, line: str) -> None:
         raise CutOffError
 
     keeper.after_tick = crash  # type: ignore[method-assign]
@@ -166,6 +166,19 @@ def test_a_side_effect_that_had_begun_when_the_crash_came_is_not_repeated(folder
     assert [line["kind"] for line in lines] == ["begin", "act"] and lines[1]["keys"] == ["first#1"]
     result, _ = run(folder, said=said)
     assert result.result == "SUCCESS" and said.count("one") <= 1 and said.count("two") == 1
+
+
+def test_a_mission_that_an_operator_ended_is_not_resumed(folder: Path) -> None:
+    """Ended, and killed a moment later."""
+
+    def progress(system: System) -> None:
+        if 2.0 <= system.clock.now_s() < 2.4:
+            system.executive.core.abort("operator")
+
+    result, _ = run(folder, on_progress=progress)
+    assert result.reason == "stopped"
+    past = read_journal(folder / "journal")
+    assert past is not None and not past.has_begun
 
 
 def test_a_run_that_went_on_can_be_replayed(folder: Path) -> None:
