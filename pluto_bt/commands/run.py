@@ -64,15 +64,16 @@ def _run(args: argparse.Namespace) -> RunResult:
     inputs = read_inputs(Request.of(args), faults=faults)
     for warning in inputs.warnings:
         print(warning.as_text(), file=sys.stderr)
-    from pluto_bt.commands.progress import Progress
+    from pluto_bt.commands.progress import make_progress
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
-    progress = Progress(sys.stderr if args.json else sys.stdout, watch=args.watch)
+    progress = make_progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record, resume=args.resume,
         journal=args.journal, is_placed=args.start is not None, confirm=_confirm, gateway=args.gateway, on_event=progress.event,
         on_progress=progress.show,
     )  # fmt: skip
+    progress.attach(runner.mission)
     with runner.interruptible():
         result = runner.run()
     progress.end(result)

@@ -13,17 +13,18 @@ from typing import Any, Final
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.decorators.updated import UpdateWatch
 from pluto_bt.trees.engine.node import Node
-from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
 from pluto_bt.trees.mission import Mission
 from pluto_bt.trees.nav2.paced import Paced
 from pluto_bt.trees.scopes import EMPTY, Entry, Scope
-from pluto_bt.trees.tracked import LETTERS, Tracked
+from pluto_bt.trees.tracked import Tracked
 from pluto_bt.trees.values import PortProblem, kind_of_value
 
 State = dict[str, Any]  # {"nodes": {number: [letter, memory]}, "board": {scope number: {key: [seq, is typed, value]}}}
 OWN: Final = frozenset(vars(Node()))  # what every node has; the rest is memory, or was set by the loader
 NOT_MEMORY: Final = frozenset({"child", "enums", "scope", "script", "source_key", "tree_id", "timer", "started", "expired", "waiting", "resumes"})
-STATUS_OF_LETTER: Final[dict[str, Result]] = {letter: status for status, letter in LETTERS.items()}
+LETTERS: Final[dict[Result, str]] = {IDLE: "I", RUNNING: "R", SUCCESS: "S", FAILURE: "F", SKIPPED: "K"}
+STATUS_OF_LETTER: Final = {letter: status for status, letter in LETTERS.items()}
 LEFT_OUT: Final = object()
 
 
@@ -120,14 +121,15 @@ def _restore_scope(scope: Scope, entries: dict[str, Any], lost: list[str]) -> No
     for key, (seq, is_typed, plain) in entries.items():
         entry = scope.entries.get(key)
         if entry is None:
-            entry = scope.entries[key] = Entry()
+            entry = scope.entries[key] = Entry(scope.board)
             scope.board.changes += 1
         try:
             value = entry.kind.convert(plain["text"]) if isinstance(plain, dict) and "text" in plain and entry.kind is not None else from_json(plain)
         except (PortProblem, ValueError):
             lost.append(key)
             continue
-        entry.value, entry.seq = value, seq
+        entry.put(value)
+        entry.seq = seq
         if is_typed and entry.kind is None:
             entry.kind = kind_of_value(value)
 

@@ -14,11 +14,11 @@ from pluto_bt.trees.deciding import decider_of
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
-from pluto_bt.trees.engine.status import FAILURE, IDLE, NAME_OF_STATUS, RUNNING, SUCCESS, Result
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result, name_of
 from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
-from pluto_bt.trees.tracked import Tracked
+from pluto_bt.trees.tracked import Tracked, letter_of
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
 
@@ -77,7 +77,7 @@ class Mission:
             raise self._tick_error(error) from error
         if result is SUCCESS or result is FAILURE:
             reset(root)
-        return NAME_OF_STATUS[result]
+        return name_of(result)
 
     def _before_tick(self) -> None:
         context = self._context
@@ -129,6 +129,10 @@ class Mission:
         skipped, now_s = self._skipped(), self._context.clock.now_s()
         return [tracked.state(tracked.status(skipped), now_s) for tracked in self._tracked]
 
+    def now_s(self) -> float:
+        """The time of its clock."""
+        return self._context.clock.now_s()
+
     def active_leaf(self) -> str:
         """The path of the deepest RUNNING node, the first one where several are; "" if none is."""
         best: Tracked | None = None
@@ -172,7 +176,7 @@ class Mission:
     def status_line(self) -> str:
         """One letter a node, depth first: its status (I R S F), or K if it was skipped in the last tick."""
         skipped = self._skipped()
-        return "".join([tracked.letter(skipped) for tracked in self._tracked])
+        return "".join([tracked.letter(skipped) for tracked in self._tracked] if skipped else [letter_of(one.node) for one in self._tracked])
 
     def attach(self, robot: Any) -> None:
         """Join a robot that was not there yet when the mission was loaded."""
@@ -184,6 +188,7 @@ class Mission:
         World scripts let leaves fail with it.
         """
         found = [one for one in self._tracked if not one.node.children and name in (one.plan.name, one.plan.type_name, one.path)]
+        self._context.may_remember = False  # from now on not all follows from the entries
         for tracked in found:
             node = tracked.node
             own = self._own_steps.setdefault(id(node), node.step)
@@ -233,7 +238,7 @@ def _watched(number: int, step: Callable[[], Result], listen: Callable[[int, str
     def watched() -> Result:
         result = step()
         if result is not RUNNING:
-            listen(number, NAME_OF_STATUS[result])
+            listen(number, name_of(result))
         return result
 
     return watched
