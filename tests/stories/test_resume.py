@@ -13,6 +13,7 @@ from pluto_bt.bench.resume import MISSION, Outcome, outcomes
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.playback import replay_file
 from pluto_bt.result import RunResult
+from pluto_bt.resume import ResumeRequest
 from pluto_bt.runner import Runner, make_runner
 from pluto_bt.system import System
 from pluto_bt.trees.journal import read_journal
@@ -37,8 +38,9 @@ def folder(tmp_path: Path) -> Path:
 def made(folder: Path, policy: str = "resume", start: str | None = None, said: list[str] | None = None, **how: Any) -> Runner:
     request = Request(str(folder / "two.xml"), world="yard.xml", platform="pioneer", start=start, set=how.pop("settings", ()))
     heard = [] if said is None else said
+    asked = ResumeRequest(policy, folder / "journal", start is not None, how.pop("confirm", lambda question: False))
     how = {"max_time_s": 60.0, "on_event": lambda event: heard.append(event.text) if event.code == "say" else None, **how}
-    return make_runner(read_inputs(request), resume=policy, journal=folder / "journal", is_placed=start is not None, **how)
+    return make_runner(read_inputs(request), resume=asked, **how)
 
 
 def cut_off(folder: Path, at_s: float, said: list[str] | None = None, **how: Any) -> None:
