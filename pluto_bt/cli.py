@@ -8,11 +8,18 @@ import sys
 COMMANDS = {
     "run": "run a mission in a simulated world",
     "check": "find every fault of missions, worlds, maps and platform files",
+    "fmt": "bring missions and worlds into one canonical form",
+    "diff": "say what differs between two missions, in nodes and ports",
     "tree": "show a mission's tree (ascii, unicode, dot, svg, xhtml, xml)",
     "nodes": "list every node with its ports",
     "new": "write a first mission or leaf to start from",
     "ps": "show the modules of a running robot",
     "shell": "talk to a running robot: stop, goto X Y, maketurn DEG, pose, tree",
+    "why": "why the robot is not moving: of a running robot or of a black box",
+    "replay": "a recorded run, tick by tick, or executed again",
+    "info": "what a black box holds",
+    "repair": "make a black box whole that was cut short",
+    "totest": "make a pytest file of a recorded run",
     "bench": "measure, and print ratios",
 }
 

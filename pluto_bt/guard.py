@@ -74,7 +74,8 @@ class Guard:
         """`module:NAME` or `leaf:NAME` fails, or works again."""
         kind, _, name = fault.device.partition(":")
         if kind == "leaf":
-            self._leaf_fault(name, fault.kind if begins else "")
+            wanted = fault.kind if begins else ""
+            self._system.executive.core.order(lambda: self._leaf_fault(name, wanted))  # between two ticks, never within one
             return
         part = self._system.part(name)
         if part is None:
@@ -99,6 +100,7 @@ class Guard:
             raise PlutoError(f'the world script lets leaf "{name}" {"raise" if kind == "raise" else "return None"}')
 
         core = self._system.executive.core
+        core.note("leaf-fault", text=f"{kind} {name}")
         trees = [activity.mission for activity in (core.active, core.job) if activity is not None]
         found = [tree.replace_step(name, step if kind else None) for tree in trees]  # in all of them, not only in the first
         if True not in found:

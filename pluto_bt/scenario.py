@@ -71,6 +71,7 @@ class Play:
         world: str | None = None,
         *,
         mission: str,
+        map: str | None = None,
         ports: Mapping[str, Any] | None = None,
         seed: int | None = None,
         platform: str | None = None,
@@ -82,19 +83,22 @@ class Play:
         max_time_s: float | None = 600.0,
         nodes: Iterable[type] = (),
         gateway: str | None = None,
+        record: str | Path | None = None,
     ) -> Run:
         """Play one scenario to its end. Values of `ports` may be Python values or text as in `--port`.
 
         Raises: InputError with every fault of the files.
         """
         request = Request(
-            mission=mission, world=world, start=start, platform=platform, tree=tree, seed=None if seed is None else str(seed), set=tuple(settings),
+            mission=mission, world=world, map=map, start=start, platform=platform, tree=tree, set=tuple(settings),
+            seed=None if seed is None else str(seed),
             port=[f"{name}={text_of(value)}" for name, value in (ports or {}).items()],
         )  # fmt: skip
         events: list[Event] = []
         leaves = tuple(nodes)
         inputs = read_inputs(request, self._folder, leaves)
-        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway}
+        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway,
+                               "record": record}  # fmt: skip
         runner = make_runner(inputs, nodes=leaves, on_event=events.append, **how)
         runner.run()
         return Run(runner, events)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox
 from pluto_bt.blackboard.messages import ActuatorState, Event
@@ -17,9 +17,10 @@ from pluto_bt.gateway.listen import Address
 from pluto_bt.guard import Guard
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.notebook import Notebook
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.robot_link import RobotLink
-from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
+from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock
 from pluto_bt.runtime.latch import OPERATOR_STOP, SafetyLatch
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
@@ -28,6 +29,10 @@ from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.track import Track
 from pluto_bt.trees import Mission, load_mission
+
+if TYPE_CHECKING:
+    from pluto_bt.modules.recorder import Recorder
+    from pluto_bt.record.entries import Run
 
 # fmt: off
 MODULES: tuple[Module, ...] = (
@@ -52,12 +57,21 @@ MODULES: tuple[Module, ...] = (
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
+    Module("recorder",  "pluto_bt.modules.recorder:Recorder",     0.5,    "recorder",   needs=("executive",), device="recorder",            budget_ms=20.0),
 )
 # fmt: on
 
 INBOXES = {  # link -> the link above, which owns its inbox
     "base": "filter", "filter": "drive", "drive": "avoid", "avoid": "motion", "motion": "", "job": "", "wrist": "", "arm": "", "alarms": "",
 }  # fmt: skip
+
+
+class RecordRequest(NamedTuple):
+    """What the recorder is to write where: the run, and the files it is made of."""
+
+    path: Path
+    run: Run
+    files: dict[str, bytes]
 
 
 @dataclass
@@ -73,6 +87,8 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
+    record: RecordRequest | None = None
+    own_clock: StepClock | None = None
     load: Callable[..., Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
@@ -96,7 +112,8 @@ class System:
         self.latch = SafetyLatch()
         self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        has = {*self.simulator.devices, *(("gateway",) if options.has_gateway else ()), *(("arm",) if options.robot.devices.arm else ())}
+        asked = {"gateway": options.has_gateway, "recorder": options.record is not None, "arm": options.robot.devices.arm is not None}
+        has = {*self.simulator.devices, *(name for name, is_asked in asked.items() if is_asked)}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()
 
@@ -106,7 +123,8 @@ class System:
         context = Context(
             board=self.board, clock=self.clock, platform=self.options.robot, inboxes=self.inboxes, devices=self.simulator.devices,
             map=self.options.map or self.options.world, say=self.say, is_running=self.is_running, start_pose=self.simulator.pose,
-            order_module=self.order_module, silent_s=self.silent_s, latch=self.latch, joined=self,
+            order_module=self.order_module, silent_s=self.silent_s, latch=self.latch, joined=self, own_clock=self.options.own_clock,
+            black_box=None if self.options.record is None else Notebook(TOPICS, self.options.robot.record.thinned_period_s),
         )  # fmt: skip
         self.robot = RobotLink(context)
         return context
@@ -115,6 +133,7 @@ class System:
         made: dict[str, Any] = {row.name: row.load()(self.context) for row in in_start_order(rows)}
         self._parts = {row.name: Part(row, made[row.name], number, self.guard) for number, row in enumerate(rows)}
         self.executive = made["executive"]
+        self.recorder: Recorder | None = made.get("recorder")
         self.executive.on_event = self.options.on_event
 
     def _join(self) -> None:
@@ -202,10 +221,10 @@ class System:
         for link in ("base", "filter", "drive", "avoid", "motion"):
             self.inboxes[link].stop(source, now_s)
 
-    def operator_stop(self, source: str) -> None:
-        """Zero velocity at once, latched until somebody commands anew; a running mission pauses. Thread-safe."""
+    def operator_stop(self, source: str, why: str = OPERATOR_STOP) -> None:
+        """Zero velocity at once, latched until somebody commands anew; a running mission pauses for the reason `why`. Thread-safe."""
         self.latch.set(OPERATOR_STOP, f"{source} stopped the robot")
-        self.executive.core.pause(OPERATOR_STOP)  # before the links are stopped, so that no tick takes the stop for a failure
+        self.executive.core.pause(why)  # before the links are stopped, so that no tick takes the stop for a failure
         self.stop_robot(source)
 
     def operator_resume(self) -> None:

@@ -44,10 +44,14 @@ def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 # ---------------------------------------------------------------------- missions
 
 
-def _types(builtin: bool, *kinds: str) -> list[NodeType]:
-    found = [node for node in node_types().values() if node.builtin is builtin and node.kind in kinds]
+def _types(builtin: bool, *kinds: str, of_nav2: bool = False) -> list[NodeType]:
+    found = [node for node in node_types().values() if node.builtin is builtin and node.kind in kinds and _is_of_nav2(node) is of_nav2]
     of_others = [node for node in found if not builtin and not node.make.__module__.startswith("pluto_bt.")]  # those of other tests
     return sorted((node for node in found if node not in of_others), key=lambda node: node.name)
+
+
+def _is_of_nav2(node: NodeType) -> bool:
+    return node.make.__module__.startswith(("pluto_bt.behaviours.nav2", "pluto_bt.trees.nav2"))
 
 
 def _port(port: PortModel) -> str:
@@ -63,9 +67,16 @@ def _ports(node: NodeType) -> str:
     return "<br>".join([*own, "+ *motion ports*"] if is_motion else own) or "–"
 
 
-def nodes(builtin: bool, *kinds: str) -> str:
+def nodes(builtin: bool, *kinds: str, of_nav2: bool = False) -> str:
     """Node, ports, what it does."""
-    return table(("node", "ports", "what it does"), ((f"`{node.name}`", _ports(node), node.description) for node in _types(builtin, *kinds)))
+    types = _types(builtin, *kinds, of_nav2=of_nav2)
+    return table(("node", "ports", "what it does"), ((f"`{node.name}`", _ports(node), node.description) for node in types if not node.missing))
+
+
+def missing_nodes() -> str:
+    """Nodes of Nav2 that are known by name alone."""
+    types = _types(False, "Action", "Condition", of_nav2=True)
+    return table(("node", "what is missing"), ((f"`{node.name}`", node.missing) for node in types if node.missing))
 
 
 def motion_ports() -> str:
@@ -226,6 +237,10 @@ TABLES: dict[str, Callable[[], str]] = {
     "controls": lambda: nodes(True, "Control"),
     "decorators": lambda: nodes(True, "Decorator"),
     "builtin-leaves": lambda: nodes(True, "Action", "Condition"),
+    "nav2-controls": lambda: nodes(False, "Control", "Decorator", of_nav2=True),
+    "nav2-actions": lambda: nodes(False, "Action", of_nav2=True),
+    "nav2-conditions": lambda: nodes(False, "Condition", of_nav2=True),
+    "nav2-missing": missing_nodes,
     "motion-ports": motion_ports,
     "topics": topics,
     "faults": faults,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from py_trees.common import Status
 
@@ -19,6 +20,7 @@ class CarGoTo(SteppedLeaf):
     """Drives the car to `goal` (x;y, the same in car and world frame). Needs an accepted marker where the platform has the camera."""
 
     NEEDS_MARKER = True
+    WAY: ClassVar = "straight"
     INPUT_PORTS = {
         "goal": Port(tuple[float, float], True, "where to", unit="m"),
         "tolerance_m": Port(float, False, "nearer counts as reached", 1.0, unit="m", ge=0.01),
@@ -34,6 +36,11 @@ class CarGoTo(SteppedLeaf):
             return self.fail("outside-map", f"goal {x:g};{y:g} is outside the mapped area")
         self._skill = CarGoto(x, y, float(self.get_input("tolerance_m")), area.has_line)
         return None
+
+    def resume(self, robot: Robot) -> None:
+        """Its rounds begin anew: after a pause the wheels stand still, and nothing hinders them."""
+        super().resume(robot)
+        self._skill = CarGoto(self._skill.x_m, self._skill.y_m, self._skill.tolerance_m, self._skill.line_is_inside)
 
     def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
         """One step of the skill."""

@@ -149,7 +149,7 @@ def position_sigma_m(pose: Pose) -> float:
 class InsideArea(Condition):
     """The robot's centre is inside an area of the map."""
 
-    INPUT_PORTS = {"area": Port(str, True, "id of the area")}
+    INPUT_PORTS = {"area": Port(str, True, "id of the area", names="area")}
     OUTPUT_PORTS = NO_PORTS
 
     def ask(self, robot: Robot) -> tuple[bool, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import ClassVar
 
 from py_trees.common import Status
 
@@ -16,6 +17,7 @@ from pluto_bt.skills.map_area import MapArea
 class GoTo(MotionLeaf):
     """Drives to `goal` in the frame of Localization/Pose. Fails with `stuck` when avoidance comes no nearer."""
 
+    WAY: ClassVar = "straight"
     INPUT_PORTS = {
         "goal": Port(tuple[float, float], True, "where to", unit="m"),
         "force": Port(float, False, "weight of the goal: above 1 avoidance is weaker, below 1 stronger", 1.0, ge=0.0),
@@ -44,8 +46,7 @@ class GoTo(MotionLeaf):
         trouble = self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble
-        waiting = status.text if status is not None and status.reason else ""
-        return self.wait(f"{self._to_go(robot)}; {waiting}" if waiting else self._to_go(robot))
+        return self.wait(self._to_go(robot))
 
     def _to_go(self, robot: Robot) -> str:
         pose = pose_of(robot)

@@ -6,7 +6,7 @@ Each posts one command; motion runs the library tree of the job, the same as for
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -42,7 +42,7 @@ class JobLeaf(MotionLeaf):
             return
         job, command = robot.newest("motion/job"), self._ticket.command
         is_ours = isinstance(job, JobState) and job.number == self._number
-        self._was_accepted = False
+        self._was_accepted, self._posted_s = False, self._last_s
         self._post_job(robot, MotionCommand.RESUME if is_ours else MotionCommand(command.flags), command.position, command.velocity)
 
     def follow(self, robot: Robot) -> Status:
@@ -69,7 +69,7 @@ class JobLeaf(MotionLeaf):
         if isinstance(job, JobState):
             self._number = job.number
         phase = MotionStatus(motion) if motion in tuple(MotionStatus) else MotionStatus.AT_REST
-        return self.wait(", ".join(filter(None, (code_name(phase), status.text if status.reason else ""))))
+        return self.wait(code_name(phase))
 
     def _post_job(self, robot: Robot, flags: MotionCommand, position: Pair, velocity: Pair) -> None:
         avoid = AVOIDANCE[self.get_input("avoid")]
@@ -82,6 +82,7 @@ class JobLeaf(MotionLeaf):
 class MoveTo(JobLeaf):
     """Drives to `goal` by ray following: along open paths in the middle of the street. Fails with `no-path` where there is none."""
 
+    WAY: ClassVar = "found"
     INPUT_PORTS = {"goal": Port(tuple[float, float], True, "where to", unit="m"), **MOTION_INPUTS}
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
@@ -133,6 +134,7 @@ class Resume(JobLeaf):
 class SetRectangle(MotionLeaf):
     """Sets the rectangle that limits MoveTo, Explore and Investigate: `b` to either side of `home`, `h` deep; b = 0 removes it."""
 
+    DRIVES: ClassVar = False
     INPUT_PORTS = {
         "rectangle": Port(tuple[float, float], True, '"b;h": half the width of the base, and the depth', unit="m", ge=0.0),
         "home": Port(tuple[float, float, float], False, '"x;y;theta_deg": middle of the base, looking into it', (0.0, 0.0, 0.0)),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -21,6 +21,7 @@ IN_PLACE_RADPS: Final = math.radians(30.0)
 class MakeTurn(SteppedLeaf):
     """Turns by `angle_deg` relative to the present heading, clockwise positive (the only clockwise angle in missions), until within 10°."""
 
+    WAY: ClassVar = "stays"
     INPUT_PORTS = {
         "angle_deg": Port(float, True, "by how much, clockwise positive", unit="deg", ge=-3600.0, le=3600.0),
         **MOTION_INPUTS,

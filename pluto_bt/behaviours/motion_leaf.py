@@ -7,7 +7,7 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -16,9 +16,11 @@ from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING, sentence
 from pluto_bt.behaviours.robot import Robot, Ticket
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
-from pluto_bt.blackboard.messages import FVectorState, Pair
+from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
+TRIED_AGAIN: Final = ("odometry-frozen",)  # the stop filter lets held wheels try again every second
+CLEAR_S: Final = 2.0  # so long must they then go without the word before the patience begins anew
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
 MOTION_INPUTS: Final = {
@@ -30,7 +32,15 @@ MOTION_OUTPUTS: Final = {"reason": Port(str, False, "why it failed: a word of th
 
 
 class MotionLeaf(Leaf):
-    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`."""
+    """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`.
+
+    Attributes:
+        DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
+        WAY: how the leaf comes to its port `goal`: "straight", "planned" on the map, "found" on the way; "stays" if it stays where it is; "" else.
+    """
+
+    DRIVES: ClassVar = True
+    WAY: ClassVar = ""
 
     def initialise(self) -> None:
         """Forget the last run; the command itself goes out in the first `update`."""
@@ -39,7 +49,8 @@ class MotionLeaf(Leaf):
         self._moves = False
         self._ticket: Ticket | None = None
         self._was_accepted = False
-        self._word, self._word_since_s = "", 0.0
+        self._heard: FVectorState | None = None
+        self._word, self._word_since_s, self._word_seen_s = "", 0.0, -math.inf
         self._start_s = self._last_s = self._posted_s = self.now_s()
         self._timeout_s = float(self.get_input("timeout_s"))
 
@@ -59,7 +70,16 @@ class MotionLeaf(Leaf):
             self.resume(robot)
         if self.elapsed_s >= self._timeout_s:
             return self.fail("timeout", f"{self._timeout_s:g} s are over")
-        return self.follow(robot)
+        return self._told(self.follow(robot))
+
+    def _told(self, status: Status) -> Status:
+        """While the chain holds the robot back the leaf says with which word and why."""
+        if status is Status.RUNNING:
+            held = self._heard if self._heard is not None and self._heard.reason else None
+            self.reason = "" if held is None else held.reason
+            if held is not None:
+                self.feedback_message = "; ".join(filter(None, (self.feedback_message, f"{held.reason}: {held.text or sentence(held.reason)}")))
+        return status
 
     def terminate(self, new_status: Status) -> None:
         """Zero velocity, if the robot was told to move."""
@@ -82,7 +102,7 @@ class MotionLeaf(Leaf):
             c = self._ticket.command
             self._was_accepted = False
             self._posted_s = self.now_s()
-            self._ticket = robot.command(c.flags, c.position, c.velocity, c.acceleration[0], c.force[0])
+            self._ticket = robot.command(c.flags, c.position, c.velocity, c.acceleration[0], c.force)
 
     # ---------------------------------------------------------------- for subclasses
 
@@ -92,19 +112,28 @@ class MotionLeaf(Leaf):
         return self._last_s - self._start_s
 
     def post(
-        self, robot: Robot, kind: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0
+        self,
+        robot: Robot,
+        kind: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> None:
         """Post `10*A + kind` with the avoidance that the port asks for, as far as the platform has the sensors."""
         devices = robot.platform.devices
         has = (Avoidance.SONAR if devices.sonar is not None else 0) | (Avoidance.LASER if devices.laser is not None else 0)
-        flags = 10 * (AVOIDANCE[self.get_input("avoid")] & has) + kind
-        self._post_flags(robot, flags, position, velocity, tolerance_m, force)
-
-    def _post_flags(self, robot: Robot, flags: int, position: Pair, velocity: Pair, tolerance_m: float, force: float) -> None:
+        flags = 10 * (AVOIDANCE[self.avoidance()] & has) + kind
         if self._ticket is None or self._was_accepted:  # else the time without an answer goes on
             self._posted_s = self._last_s
         self._moves, self._was_accepted = True, False
-        self._ticket = robot.command(flags, position, velocity, tolerance_m, force)
+        self._ticket = robot.command(flags, position, velocity, tolerance_m, force, on_the_way=on_the_way)
+
+    def avoidance(self) -> str:
+        """Which sensors slow, stop and steer."""
+        return str(self.get_input("avoid"))
 
     def max_speed_mps(self, robot: Robot) -> float:
         """The port's limit, held within the platform's."""
@@ -114,7 +143,7 @@ class MotionLeaf(Leaf):
         """What motion says of our command, or None while it has not taken it."""
         if self._ticket is None:
             return None
-        status = robot.status(self._ticket)
+        status = self._heard = robot.status(self._ticket)
         self._was_accepted = self._was_accepted or status is not None
         return status
 
@@ -130,7 +159,11 @@ class MotionLeaf(Leaf):
             return None
         if status.reason == "bad-command":
             return self.fail("bad-command", status.text)
-        return self._patience(_waiting_word(status), status.text)
+        word = _waiting_word(status)
+        trouble = self._patience(word, status.text)
+        if trouble is None and word == "bumper" and _is_released(robot):
+            self.resume(robot)  # the drive's latch opens with a new command
+        return trouble
 
     def _replaced(self, robot: Robot) -> Status:
         now = robot.newest("motion/status")
@@ -139,12 +172,22 @@ class MotionLeaf(Leaf):
         return self.fail("cancelled", "another command took its place")
 
     def _patience(self, word: str, text: str) -> Status | None:
-        """Let the chain wait for a while with the same word."""
+        """Let the chain wait for a while with the same word. Where the chain tries again, a moment without the word is no end of it."""
+        if word:
+            self._word_seen_s = self._last_s
+        elif self._word in TRIED_AGAIN and self._last_s - self._word_seen_s < CLEAR_S:
+            return None
         if word != self._word:
             self._word, self._word_since_s = word, self._last_s
         if word and self._last_s - self._word_since_s >= WAITING[word]:
             return self.fail(word, text or sentence(word))
         return None
+
+
+def _is_released(robot: Robot) -> bool:
+    """True if the bumpers are known to be open."""
+    bumper = robot.newest("ATRV2/Bumper")
+    return isinstance(bumper, BumperState) and not (bumper.front or bumper.back or robot.is_stale("ATRV2/Bumper"))
 
 
 def _waiting_word(status: FVectorState) -> str:

@@ -13,7 +13,7 @@ from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, pose_doubt
 from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
 from pluto_bt.blackboard.messages import FVectorState, Pair
@@ -71,8 +71,9 @@ class FindPath(Leaf):
             return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            text, is_over = "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
-            return self.fail("no-pose", text) if is_over else self.wait(text)
+            doubt = pose_doubt(robot)
+            text, is_over = doubt.text or "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
+            return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
         goal = goal_of(self)
         around.openings.turn()
         if goal is not None and is_near(around, goal):
@@ -80,9 +81,18 @@ class FindPath(Leaf):
             return self.succeed("the goal is near")
         self._set_output("near", False)
         around.way = around.find(goal)
+        if around.way is not None and not around.headway.decide(around.robot[:2]):
+            if goal is not None:
+                return self.fail("stuck", "one path after the other ends here")
+            x_m, y_m = around.way.points[-1].tolist()
+            around.map.give_up(x_m, y_m, ray.END_M)
+            around.way = around.find(goal)
         self._set_output("found", around.way is not None)
         if around.way is None:
             return self.succeed("all that can be reached is explored") if goal is None else self.fail("no-path", "every way is blocked")
+        if goal is not None and around.way.leads_there and ray.is_done(around.way, around.robot, around.map.cell_m):
+            self._set_output("near", True)
+            return self.succeed("no path leads nearer to the goal")
         return self.succeed(f"a path of {around.way.length_m:.1f} m")
 
 

@@ -30,12 +30,14 @@ class Port(PortInformation):
         ge: smallest value allowed, for numbers (each number of a list or point).
         le: largest value allowed.
         choices: the words allowed, for texts.
+        names: "area" for the id of an area of the map; a check against a world looks whether it is there.
     """
 
     unit: str = ""
     ge: float | None = None
     le: float | None = None
     choices: tuple[str, ...] = ()
+    names: str = ""
 
     def __post_init__(self) -> None:
         """py_trees' own check of the default does not know tuples; the loader checks values where they are written."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -19,6 +19,7 @@ REST_WITHIN_S: Final = 10.0
 class Stop(MotionLeaf):
     """Zero velocity; SUCCESS once the wheels stand still."""
 
+    DRIVES: ClassVar = False
     INPUT_PORTS = dict(MOTION_INPUTS)
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
@@ -43,6 +44,7 @@ class Stop(MotionLeaf):
 class Release(MotionLeaf):
     """cmdFlags −1: stops the threads of motion and avoidance, so that somebody else may command the drive."""
 
+    DRIVES: ClassVar = False
     INPUT_PORTS = dict(MOTION_INPUTS)
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import math
 
-from pluto_bt.behaviours.robot import Robot
+import msgspec
+
+from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
-from pluto_bt.skills.local_map import LocalMap
+from pluto_bt.skills.headway import Headway
+from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.rays import Openings
@@ -21,6 +24,7 @@ from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.ways import Way, Ways
 
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
+FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
 
@@ -33,8 +37,11 @@ class Surroundings:
         self.ways = Ways(self.map, outline_of(platform.body.outline_m))
         self.openings = Openings(self.map)
         self.rectangle: Rectangle | None = None  # in Localization/Pose
+        self.fine: LocalMap | None = None  # the same on smaller cells, for who passes through doors; kept once `look_finely` was called
         self._laser = platform.devices.laser
         self._is_empty = True
+        self.robot: Planar = (0.0, 0.0, 0.0)
+        self.believed: Planar = (0.0, 0.0, 0.0)
         self._refreshed_s = -math.inf
         self.begin(None)
 
@@ -42,6 +49,7 @@ class Surroundings:
         """A job begins; what was seen stays known, what was explored only if the job goes on."""
         self.rectangle = rectangle
         self.blocked = 0
+        self.headway = Headway()
         self.way: Way | None = None
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
         self.object: SeenObject | None = None
@@ -54,23 +62,55 @@ class Surroundings:
         self.map.warm()
         self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
 
+    def look_finely(self, cell_m: float) -> None:
+        """Keep the fine map too from now on."""
+        if self.fine is None:
+            fine = {"path_half_width_m": CELLS_OF_A_PATH * cell_m, "wide_half_width_m": FINE_ROOM_M, "look_m": FINE_LOOK_M, "join_m": FINE_JOIN_M}
+            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine))
+            if not self._is_empty:
+                self.fine.forget(self.robot)
+
+    def forget(self) -> None:
+        """What was seen is not known any more; what was explored is."""
+        for grid in self._grids():
+            grid.erase(self.robot[:2], 4.0 * CELLS * grid.cell_m, inside=True)
+        self._refreshed_s = -math.inf
+
+    def forget_square(self, middle: Pair, side_m: float, *, inside: bool) -> None:
+        """What was seen in a square round a point (dead reckoning), or outside of it, is not known any more."""
+        for grid in self._grids():
+            grid.erase(middle, side_m, inside=inside)
+        self._refreshed_s = -math.inf
+
+    @property
+    def is_empty(self) -> bool:
+        """True as long as nobody has looked: then no pose is known either."""
+        return self._is_empty
+
+    def _grids(self) -> tuple[LocalMap, ...]:
+        return (self.map,) if self.fine is None else (self.map, self.fine)
+
     def look(self, robot: Robot, now_s: float) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is."""
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
-        if not isinstance(dead, Pose) or not isinstance(believed, Pose) or robot.is_stale("Localization/Pose"):
+        if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
             return False
-        self.robot: Planar = (dead.pose[0], dead.pose[1], dead.pose[3])
-        self.believed: Planar = (believed.pose[0], believed.pose[1], believed.pose[3])
+        self.robot = (dead.pose[0], dead.pose[1], dead.pose[3])
+        self.believed = (believed.pose[0], believed.pose[1], believed.pose[3])
         if self._is_empty:
-            self.map.forget(self.robot)
+            for grid in self._grids():
+                grid.forget(self.robot)
             self._is_empty = False
+        self.map.visit(*self.robot[:2])
         self.views = tuple(robot.scan_views())
         for view in self.views:
             if view.laser is not None and self._laser is not None:
-                self.map.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
+                for grid in self._grids():
+                    grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
         if now_s - self._refreshed_s >= REFRESH_S:
             self._refreshed_s = now_s
-            self.map.refresh(now_s)
+            for grid in self._grids():
+                grid.refresh(now_s)
         return True
 
     @property

@@ -24,9 +24,13 @@ class RefreshedLeaf(MotionLeaf):
         """Post the command."""
         raise NotImplementedError
 
+    def ends(self) -> tuple[float, float]:
+        """(seconds, metres) after which it is over."""
+        return float(self.get_input("duration_s")), float(self.get_input("distance_m"))
+
     def begin(self, robot: Robot) -> Status | None:
         """First post. A duration of 0 is over before anything moves."""
-        self._duration_s, self._distance_m = float(self.get_input("duration_s")), float(self.get_input("distance_m"))
+        self._duration_s, self._distance_m = self.ends()
         self._from_m = _driven_m(robot)
         self._sent_s = self.elapsed_s
         if self._duration_s <= 0.0 or self._distance_m <= 0.0:

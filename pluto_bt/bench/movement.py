@@ -12,14 +12,16 @@ from pathlib import Path
 from typing import Any
 
 from pluto_bt.bench import lone_things, patrols
+from pluto_bt.bench.buildings import Building, kept
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.towns import Town
 from pluto_bt.bench.yards import Yard
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.result import RunResult
 from pluto_bt.runner import Runner, make_runner
 
-TOWNS, YARDS = 40, 50
+TOWNS, YARDS, BUILDINGS = 40, 50, 40
 MISSION = '<root BTCPP_format="4"><BehaviorTree ID="main">{}</BehaviorTree></root>'
 OBJECT = """<world name="field" seed="{seed}"><wall id="w">-12,-12 12,-12 12,12 -12,12 -12,-12</wall>
 <circle id="o" x="2" y="1" r="{r}"/><robot platform="atrv2" x="-6" y="-2" theta_deg="0"/></world>"""
@@ -91,11 +93,28 @@ def objects(folder: Path) -> list[BenchRow]:
     return [*_rows("investigate: objects circled", results, "100"), farthest]
 
 
+def walls(folder: Path) -> list[BenchRow]:
+    """Wall follow around houses and inside rooms, with bays, doors, posts and boxes: how well the camera kept its distance."""
+    results, keeps = [], []
+    for seed in range(3000, 3000 + BUILDINGS):
+        building, platform, side = Building.for_seed(seed)
+        wall = load_robot_file(platform).wall
+        runner = play(folder, f'<WallFollow side="{side}" length_m="{1.1 * building.way_m:.1f}"/>', building.text, 600.0)
+        results.append(runner.result)
+        keeps.append(kept(runner.system.track.points, wall, side, building.edges, wall.distance_m))
+    at_corners = sorted(keep.corner_m for keep in keeps)
+    return [
+        *_rows("wall follow: once around", results, ">= 95"),
+        BenchRow("  camera off its distance beside straight walls", max(keep.straight_m for keep in keeps), "m", "<= 0.15", "the farthest of all"),
+        BenchRow("  at corners, doors and posts", at_corners[len(at_corners) // 2], "m", "<= 0.4", f"median run; the farthest {at_corners[-1]:.2f}"),
+    ]
+
+
 def run() -> Iterator[BenchRow]:
     """All of them, one after the other."""
     yield from patrols.run()
     yield from lone_things.run()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for part in (towns, yards, objects):
+        for part in (towns, yards, objects, walls):
             yield from part(folder)

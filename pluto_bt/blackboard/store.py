@@ -46,19 +46,48 @@ class Publisher:
         self._board._write(self._index, value, now_s)
 
 
+def enclosing(samples: tuple[Sample, ...], stamp_s: float) -> tuple[Sample, Sample] | None:
+    """The two samples, of those oldest first, whose stamps enclose `stamp_s`, for interpolation; None if it lies outside."""
+    i = bisect.bisect_left(samples, stamp_s, key=_stamp)
+    if i < len(samples) and samples[i].value.stamp_s == stamp_s:
+        return samples[i], samples[i]
+    return (samples[i - 1], samples[i]) if 0 < i < len(samples) else None
+
+
 class Snapshot:
-    """All newest samples at one moment; what one tick of the tree sees."""
+    """All newest samples at one moment; what one tick of the tree sees.
 
-    __slots__ = ("_board", "_samples", "taken_s")
+    Attributes:
+        reads: rows of the topics that were asked for, in this snapshot and in all that share the set; the black box keeps them whole.
+    """
 
-    def __init__(self, board: Blackboard, samples: tuple[Sample | None, ...], taken_s: float) -> None:
+    __slots__ = ("_board", "_samples", "reads", "taken_s")
+
+    def __init__(self, board: Blackboard, samples: tuple[Sample | None, ...], taken_s: float, reads: set[int] | None = None) -> None:
         self._board = board
         self._samples = samples
         self.taken_s = taken_s
+        self.reads = set() if reads is None else reads
 
     def newest(self, name: str) -> Sample | None:
         """The sample that was newest when the snapshot was taken, or None if nobody had written."""
-        return self._samples[self._board.index_of(name)]
+        index = self._board.index_of(name)
+        self.reads.add(index)
+        return self._samples[index]
+
+    def history(self, name: str) -> tuple[Sample, ...]:
+        """The last samples up to that moment, oldest first, as many as the board still keeps."""
+        newest = self.newest(name)
+        return () if newest is None else tuple(sample for sample in self._board.history(name) if sample.seq <= newest.seq)
+
+    def around(self, name: str, stamp_s: float) -> tuple[Sample, Sample] | None:
+        """The two samples whose stamps enclose `stamp_s`; None if it lies outside the history up to that moment."""
+        return enclosing(self.history(name), stamp_s)
+
+    def seq(self, index: int) -> int:
+        """The sequence number of a row's sample, 0 without one; not a read."""
+        sample = self._samples[index]
+        return 0 if sample is None else sample.seq
 
     def age_s(self, name: str) -> float:
         """Seconds from the value's stamp to the snapshot; infinite without a value."""
@@ -84,9 +113,11 @@ class Blackboard:
             raise TopicError("two topics with one name")
         self._newest: list[Sample | None] = [None] * len(self.topics)
         self._history: list[deque[Sample] | None] = [deque(maxlen=topic.history) if topic.history > 1 else None for topic in self.topics]
+        self._aging = [(i, topic.stale_after_s, topic.name) for i, topic in enumerate(self.topics) if topic.stale_after_s > 0.0]
         self._given: set[int] = set()  # topics whose publisher has been handed out
         self._watchers: list[tuple[Callable[[], None], ...]] = [()] * len(self.topics)
         self._lock = threading.Lock()
+        self._tap: Callable[[int, Sample], None] | None = None
 
     def index_of(self, name: str) -> int:
         """The row of a topic. Raises TopicError with a suggestion if there is none of that name."""
@@ -125,6 +156,15 @@ class Blackboard:
         sample, limit_s = self._newest[index], self.topics[index].stale_after_s
         return sample is None or (limit_s > 0.0 and now_s - sample.value.stamp_s > limit_s)
 
+    def stale(self, now_s: float) -> dict[str, float]:
+        """Every topic that was written and is older than the table allows -> the stamp of its newest value (s)."""
+        found: dict[str, float] = {}
+        for index, limit_s, name in self._aging:
+            sample = self._newest[index]
+            if sample is not None and now_s - sample.value.stamp_s > limit_s:
+                found[name] = sample.value.stamp_s
+        return found
+
     def history(self, name: str) -> tuple[Sample, ...]:
         """The last samples, oldest first, as many as the table keeps."""
         index = self.index_of(name)
@@ -134,17 +174,20 @@ class Blackboard:
 
     def around(self, name: str, stamp_s: float) -> tuple[Sample, Sample] | None:
         """The two samples whose stamps enclose `stamp_s`, for interpolation; None if it lies outside the history."""
-        samples = self.history(name)
-        stamps = [sample.value.stamp_s for sample in samples]
-        i = bisect.bisect_left(stamps, stamp_s)
-        if i < len(samples) and stamps[i] == stamp_s:
-            return samples[i], samples[i]
-        return (samples[i - 1], samples[i]) if 0 < i < len(samples) else None
+        return enclosing(self.history(name), stamp_s)
 
-    def snapshot(self, now_s: float) -> Snapshot:
-        """A consistent view of all topics."""
+    def snapshot(self, now_s: float, reads: set[int] | None = None) -> Snapshot:
+        """A consistent view of all topics; `reads` gathers what is asked of it."""
         with self._lock:
-            return Snapshot(self, tuple(self._newest), now_s)
+            return Snapshot(self, tuple(self._newest), now_s, reads)
+
+    def tap(self, listen: Callable[[int, Sample], None]) -> None:
+        """Let one listener hear every sample (row, sample) in the order of writing, inside the lock: it must only take a note."""
+        self._tap = listen
+
+    def put_back(self, name: str, sample: Sample) -> None:
+        """Write a recorded sample with the number and time it had; for whoever plays a recording."""
+        self._keep(self.index_of(name), sample)
 
     def on_change(self, name: str, wake: Callable[[], None]) -> None:
         """Call `wake` after each write of the topic, in the writer's thread; it must be quick and must not raise."""
@@ -156,9 +199,17 @@ class Blackboard:
         with self._lock:
             last = self._newest[index]
             sample = Sample(value, 1 if last is None else last.seq + 1, now_s)
-            self._newest[index] = sample
-            kept = self._history[index]
-            if kept is not None:
-                kept.append(sample)
+            self._keep(index, sample)
+            if self._tap is not None:
+                self._tap(index, sample)
         for wake in self._watchers[index]:
             wake()
+
+    def _keep(self, index: int, sample: Sample) -> None:
+        self._newest[index] = sample
+        kept = self._history[index]
+        if kept is not None:
+            kept.append(sample)
+
+def _stamp(sample: Sample) -> float:
+    return sample.value.stamp_s

@@ -12,12 +12,17 @@ BENCHES = {
     "rays": "laser scans against the plain versions",
     "sim_step": "the simulator alone, against Stage's figure and ir-sim",
     "stop-times": "from a cause to zero velocity, 1000 trials each",
+    "faults": "two things break at once, in places drawn at random",
     "tick": "a tick of the tree against stock py_trees",
     "movement": "patrols, goto, moveto, explore and investigate in worlds drawn at random, with and without people",
+    "check": "a mission of 10 000 nodes, loaded and checked",
+    "patrols": "patrols over random courses in places nobody tuned to",
     "repeat": "runs with one seed: equal traces",
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",
+    "trips": "the car's trip2, 100 loops on 40 seeds",
     "jbot": "1000 feet out and back between trees: where the robot believes to be",
+    "resume": "kill -9 at every tick of a mission, then go on",
     "memory": "memory of an hour's simulated run",
 }
 

@@ -4,34 +4,35 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from pluto_bt.commands.fault_formats import FORMATS
+from pluto_bt.commands.files import find_shipped, shipped_names
 from pluto_bt.commands.options import Parser
-from pluto_bt.source import Fault, Faults, InputError
+from pluto_bt.source import Faults, InputError, Place, did_you_mean
 from pluto_bt.source.text import read_bytes
 
-FORMATS: dict[str, Callable[[list[Fault]], str]] = {
-    "text": lambda faults: "\n".join(fault.as_text() for fault in faults),
-    "json": lambda faults: json.dumps({"faults": [fault.as_json() for fault in faults]}, ensure_ascii=False),
-}
+if TYPE_CHECKING:
+    from pluto_bt.commands.legs_in_world import LegTold
+    from pluto_bt.maps.world import World
+    from pluto_bt.modules.robot_file import RobotFile
+
+ROBOTS = ("atrv2", "car", "jbot", "pioneer")  # as pluto_bt.modules.robot_file knows them, without its imports
 
 
 def main(argv: list[str]) -> int:
     """Check files; exit 0 without errors (warnings alone are 0), else 2."""
     args = _parser().parse_args(argv)
     faults = Faults()
-    _check_options(args, faults)
+    world, robot = _check_options(args, faults)
+    legs: list[LegTold] = []
     for name in args.files:
-        _check(name, args, faults)
-    found = list(faults.in_order())
-    if found or args.format != "text":
-        print(FORMATS[args.format](found))
-    if args.format == "text":
-        errors = sum(fault.severity == "error" for fault in found)
-        print(f"{len(args.files)} checked, {errors} errors, {len(found) - errors} warnings", file=sys.stderr)
+        legs += _check(name, args, world, robot, faults)
+    _print(args, faults, legs)
     return 2 if faults.has_errors else 0
 
 
@@ -39,37 +40,51 @@ def _parser() -> Parser:
     parser = Parser(prog="pluto check", description="Find every fault of missions, worlds, maps and platform files.")
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--format", choices=tuple(FORMATS), default="text")
-    parser.add_argument("--world", metavar="W", help="check start and scripts against this world too")
+    parser.add_argument("--world", metavar="W", help="drive the legs of the missions in thought through this world")
     parser.add_argument("--platform", metavar="P", help="with --world: the robot that starts in it")
     parser.add_argument("--tree", metavar="ID", help="the tree to check, if not the main one")
     parser.add_argument("--port", metavar="NAME=VALUE", action="append", default=[], help="an input of the main tree; may be repeated")
+    parser.add_argument("--model", metavar="FILE", action="append", default=[], help="a file whose TreeNodesModel describes nodes of other systems")
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes may be used")
     return parser
 
 
-def _check_options(args: argparse.Namespace, faults: Faults) -> None:
+def _check_options(args: argparse.Namespace, faults: Faults) -> tuple[World | None, RobotFile | None]:
     """The faults of what serves all the files: plugins, and the world and the robot to check against."""
     from pluto_bt.commands.inputs import check_world
     from pluto_bt.commands.plugins import load_plugins
 
     load_plugins(args.plugin, faults)
-    if args.world is not None:
-        check_world(args.world, args.platform, faults)
+    return check_world(args.world, args.platform, faults) if args.world is not None else (None, None)
 
 
-def _check(name: str, args: argparse.Namespace, faults: Faults) -> None:
-    """The faults of one file, whatever kind it is of."""
-    path = Path(name)
-    if path.suffix.lower() == ".toml":
+def _check(name: str, args: argparse.Namespace, world: World | None, robot: RobotFile | None, faults: Faults) -> list[LegTold]:
+    """The faults of one file, whatever kind it is of; the legs of a mission in a world."""
+    path = find_shipped(name) if not os.path.lexists(name) else Path(name)
+    if Path(name).suffix.lower() == ".toml" or (path is None and name in ROBOTS):
         _check_robot(name, faults)
-    elif path.suffix.lower() in (".yaml", ".yml", ".map") or _is_world(path):
+    elif path is not None and (path.suffix.lower() in (".yaml", ".yml", ".map") or _is_world(path)):
         from pluto_bt.commands.inputs import check_world
 
         check_world(name, args.platform, faults)
+    elif path is None:
+        _no_such_file(name, faults)
     else:
         from pluto_bt.commands.missions import check_mission_file
 
-        check_mission_file(name, args.tree, args.port, faults)
+        examined = check_mission_file(name, args.tree, args.port, args.model, faults)
+        if examined is not None and examined.plan is not None and world is not None:
+            from pluto_bt.commands.mission_in_world import check_in_world
+
+            return check_in_world(examined.plan, world, robot, faults)
+    return []
+
+
+def _no_such_file(name: str, faults: Faults) -> None:
+    known = [*shipped_names(), *ROBOTS]
+    what = f'there is no file "{name}", and no shipped mission, world or platform of that name'
+    expected, mend = f"a path, or one of: {', '.join(known)}", did_you_mean(Path(name).name, known)
+    faults.error(Place(name or 'file ""'), "no-such-file", what, expected=expected, found=name or "nothing", mend=mend)
 
 
 def _check_robot(name: str, faults: Faults) -> None:
@@ -87,3 +102,21 @@ def _is_world(path: Path) -> bool:
     head = (read_bytes(path, str(path), unread) or b"")[:8192]
     first = re.search(rb"<([A-Za-z_][\w.-]*)", re.sub(rb"<!--.*?-->", b"", head, flags=re.S))
     return first is not None and first[1] == b"world"
+
+
+def _print(args: argparse.Namespace, faults: Faults, legs: list[LegTold]) -> None:
+    found = list(faults.in_order())
+    if args.format == "json" and args.world is not None:
+        print(json.dumps({"faults": [fault.as_json() for fault in found], "legs": [leg.as_json() for leg in legs]}, ensure_ascii=False))
+    elif found or args.format in ("json", "sarif"):
+        print(FORMATS[args.format](found))
+    if args.format != "text":
+        return
+    for leg in legs:
+        print(leg.as_text())
+    if legs:
+        from pluto_bt.commands.legs_in_world import sum_of
+
+        print(sum_of(legs))
+    errors = sum(fault.severity == "error" for fault in found)
+    print(f"{len(args.files)} checked, {errors} errors, {len(found) - errors} warnings", file=sys.stderr)

@@ -28,10 +28,22 @@ def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) 
         if os.path.isfile(candidate):  # unlike Path.is_file, False for whatever cannot be a name
             return candidate
     found = "a folder" if os.path.isdir(name) else "no ordinary file" if os.path.lexists(name) else name or "nothing"
-    known = sorted(path.name for path in shipped.iterdir() if path.suffix in endings)
+    known = shipped_names(kind)
     faults.error(Place(name or f'{kind} ""'), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}",
                  found=found, mend=did_you_mean(Path(name).name, known))  # fmt: skip
     return None
+
+
+def find_shipped(name: str) -> Path | None:
+    """A shipped mission or world of that name, with or without its ending; None if there is none."""
+    found = (find_file(kind, name, Faults()) for kind in SHIPPED)
+    return next((path for path in found if path is not None), None)
+
+
+def shipped_names(*kinds: str) -> list[str]:
+    """The names of all shipped files of some kinds (of every kind, if none is given), in order."""
+    rows = [SHIPPED[kind] for kind in kinds or SHIPPED]
+    return [name for folder, endings in rows for name in sorted(path.name for path in (package_root() / folder).iterdir() if path.suffix in endings)]
 
 
 def refuse_shadowed_packages() -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from pluto_bt.commands.files import find_file
-from pluto_bt.commands.missions import mission_faults
+from pluto_bt.commands.missions import examine_file
 from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
 from pluto_bt.commands.plugins import load_plugins
 from pluto_bt.commands.world_checks import check_script, check_start, in_file
@@ -16,6 +16,7 @@ from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
 from pluto_bt.source import Fault, Faults, InputError, Place
+from pluto_bt.trees.checks.world_words import check_world_words
 
 DEFAULT_WORLD, DEFAULT_PLATFORM = "yard.xml", "atrv2"
 
@@ -54,6 +55,9 @@ class Inputs:
     ports: dict[str, str]
     tree: str | None
     warnings: tuple[Fault, ...] = ()
+    platform: str = DEFAULT_PLATFORM
+    settings: tuple[str, ...] = ()
+    plugins: tuple[str, ...] = ()
 
 
 def add_input_options(parser: argparse.ArgumentParser) -> None:
@@ -83,10 +87,12 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
     load_plugins(request.plugin, faults)
     ports = read_ports(request.port, faults)
     mission_path = find_file("mission", request.mission, faults, beside)
-    if mission_path is not None:
-        faults.extend(mission_faults(mission_path, request.mission, nodes, request.tree, ports))
+    examined = examine_file(mission_path, request.mission, nodes, request.tree, ports) if mission_path is not None else None
+    if examined is not None:
+        faults.extend(examined.faults)
     world = _world(DEFAULT_WORLD if request.world is None else request.world, faults, beside)
     a_priori = None if request.map is None else _world(request.map, faults, beside)
+    platform = _platform_name(request.platform, world, beside)
     robot = _robot(request.platform, world, request.set, faults, beside)
     start, seed = read_start(request.start, faults), read_seed(request.seed, faults)
     if world is not None:
@@ -95,21 +101,25 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
         if robot is not None and start is not None:
             check_start(world, robot, start, request.start, faults)
         check_script(world, faults)
+        if examined is not None and examined.plan is not None:
+            faults.extend(check_world_words(examined.plan, world, a_priori or world))
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
     seed = world.seed if seed is None else seed
-    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order())
+    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order(), platform, tuple(request.set),
+                  tuple(request.plugin))  # fmt: skip
 
 
-def check_world(name: str, platform: str | None, faults: Faults) -> None:
-    """Check a world alone: its file, its robot and that one's place, the topics and modules of its script."""
+def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
+    """Check a world alone: its file, its robot and that one's place, the topics and modules of its script. Returns what could be read."""
     world = _world(name, faults, None)
     robot = _robot(platform, world, (), faults, None)
     if world is None:
-        return
+        return None, robot
     if robot is not None and world.robot.pose is not None:
         check_start(world, robot, world.robot.pose, None, faults)
     check_script(world, faults)
+    return world, robot
 
 
 def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
@@ -122,16 +132,22 @@ def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
 def _robot(asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
     """The robot asked for, else the world's, else the default; a path in a world file is taken from its folder, too."""
     named = world.robot.platform if world is not None and asked is None else ""
+    name = _platform_name(asked, world, beside)
+    try:
+        return load_robot_file(name, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
+    except InputError as error:
+        faults.extend(error.faults)
+        return None
+
+
+def _platform_name(asked: str | None, world: World | None, beside: Path | None) -> str:
+    """The name or path of the robot file that is meant."""
+    named = world.robot.platform if world is not None and asked is None else ""
     name = asked if asked is not None else named or DEFAULT_PLATFORM
     folders = [beside] if beside is not None else []
     if named and world is not None:
         folders.append(Path(world.file).parent)
-    path = next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
-    try:
-        return load_robot_file(path, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
-    except InputError as error:
-        faults.extend(error.faults)
-        return None
+    return next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
 
 
 __all__ = ["Inputs", "Request", "add_input_options", "check_world", "read_inputs"]

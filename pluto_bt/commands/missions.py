@@ -4,35 +4,46 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pluto_bt.commands.files import find_file
 from pluto_bt.commands.option_values import read_ports
 from pluto_bt.commands.plugins import load_plugins
-from pluto_bt.source import Fault, Faults
+from pluto_bt.source import Faults
+
+if TYPE_CHECKING:
+    from pluto_bt.trees.checks import Examined
 
 
-def mission_faults(
-    path: Path, shown_name: str, nodes: Iterable[type] = (), tree: str | None = None, ports: Mapping[str, str] | None = None
-) -> tuple[Fault, ...]:
-    """Every fault of a mission, also those that BehaviorTree.CPP finds only while ticking. Without `ports`, inputs may be missing."""
+def examine_file(
+    path: Path,
+    shown_name: str,
+    nodes: Iterable[type] = (),
+    tree: str | None = None,
+    ports: Mapping[str, str] | None = None,
+    models: Sequence[str] = (),
+    whole: bool = True,
+) -> Examined:
+    """Every fault of a mission, as `examine_mission` finds them, with the topics of the robot. Without `ports`, inputs may be missing."""
     from pluto_bt.modules.topic_globals import TopicGlobals
-    from pluto_bt.trees import check_mission
+    from pluto_bt.trees.checks import examine_mission
 
-    return check_mission(path, nodes, tree=tree, ports=ports, topics=TopicGlobals(), file=shown_name)
+    return examine_mission(path, nodes, tree=tree, ports=ports, topics=TopicGlobals(), file=shown_name, models=models, whole=whole)
 
 
-def check_mission_file(name: str, tree: str | None, settings: Sequence[str], faults: Faults) -> Path | None:
+def check_mission_file(name: str, tree: str | None, settings: Sequence[str], models: Sequence[str], faults: Faults) -> Examined | None:
     """Find and check a mission; inputs may be missing as long as none is given. None if there is no such file."""
     path = find_file("mission", name, faults)
     ports = read_ports(settings, faults)
-    if path is not None:
-        faults.extend(mission_faults(path, name, tree=tree, ports=ports or None))
-    return path
+    if path is None:
+        return None
+    examined = examine_file(path, name, tree=tree, ports=ports or None, models=models)
+    faults.extend(examined.faults)
+    return examined
 
 
 def load_for_drawing(name: str, tree: str | None, plugins: Sequence[str]) -> Any:
-    """A mission without robot or world, for `pluto tree`. Inputs that have no default may be missing.
+    """A mission without robot or world, for `pluto tree`: inputs may be missing, and entries that nothing writes.
 
     Raises: InputError with every fault found.
     """
@@ -40,7 +51,9 @@ def load_for_drawing(name: str, tree: str | None, plugins: Sequence[str]) -> Any
 
     faults = Faults()
     load_plugins(plugins, faults)
-    path = check_mission_file(name, tree, (), faults)
+    path = find_file("mission", name, faults)
+    if path is not None:
+        faults.extend(examine_file(path, name, tree=tree, whole=False).faults)
     faults.raise_errors()
-    assert path is not None
+    assert path is not None  # else there was a fault
     return load_mission(path, tree=tree, ports=None, file=name)

@@ -10,6 +10,7 @@ def main(argv: list[str]) -> int:
     """Print the palette as a table, or as XML for Groot2."""
     parser = Parser(prog="pluto nodes", description="List every node with its ports.")
     parser.add_argument("--format", choices=("table", "xml"), default="table")
+    parser.add_argument("--builtin", action="store_true", help="with --format xml: the nodes of BehaviorTree.CPP too, which Groot2 knows by itself")
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes are listed too")
     args = parser.parse_args(argv)
     from pluto_bt.commands.plugins import load_plugins
@@ -18,5 +19,5 @@ def main(argv: list[str]) -> int:
     faults = Faults()
     load_plugins(args.plugin, faults)
     faults.raise_errors()
-    print(nodes_table() if args.format == "table" else nodes_xml())
+    print(nodes_table() if args.format == "table" else nodes_xml(builtin=args.builtin))
     return 0

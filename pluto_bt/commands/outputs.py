@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
+from importlib.util import find_spec
 from pathlib import Path
 
 from pluto_bt.source import Faults, Place
@@ -15,6 +16,14 @@ def check_outputs(args: argparse.Namespace, faults: Faults) -> None:
     """A fault for each file that could not be written, and for `--speed` without `--realtime`."""
     _check(args.plot, "--plot", (".png", ".svg"), faults)
     _check(args.trace, "--trace", (), faults)
+    _check(args.journal, "--journal", (), faults)
+    if args.journal is not None and args.resume is None:
+        what, mend = "--journal goes with --resume", "add --resume hold, or drop --journal"
+        faults.error(Place(f"--journal {args.journal}"), "bad-option", what, expected="--resume", found="--journal alone", mend=mend)
+    _check(args.record, "--record", (".mcap",), faults)
+    if args.record is not None and find_spec("mcap") is None:
+        mend = "pip install 'pluto_bt[record]'"
+        faults.error(Place(f"--record {args.record}"), "not-installed", "the library mcap is not installed", expected="mcap", mend=mend)
     if not args.realtime and args.speed is not None:
         what, mend = "--speed goes with --realtime; lockstep always runs as fast as it can", "add --realtime, or drop --speed"
         faults.error(Place("--speed"), "bad-option", what, expected="--realtime", found=f"--speed {args.speed} alone", mend=mend)
@@ -25,7 +34,8 @@ def _check(name: str | None, option: str, endings: tuple[str, ...], faults: Faul
         return
     place, path = Place(f"{option} {name}"), Path(name)
     if endings and path.suffix not in endings:
-        faults.error(place, "bad-option", "unknown picture format", expected=" or ".join(endings), found=path.suffix or name or "nothing")
+        what, found = f"{option} does not write this format", path.suffix or name or "nothing"
+        faults.error(place, "bad-option", what, expected=" or ".join(endings), found=found)
     elif path.suffix in INPUT_ENDINGS:
         faults.error(place, "bad-option", "this is the ending of an input file", expected="FILE.jsonl", found=path.suffix)
     elif os.path.isdir(path):

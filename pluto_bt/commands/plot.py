@@ -25,13 +25,14 @@ def draw(path: str, runner: Runner) -> None:
     x_min, y_min, x_max, y_max = _frame(world, runner)
     width_m, height_m = x_max - x_min, y_max - y_min
     scale = 10.0 / max(width_m, height_m, 1e-6)
-    figure = Figure(figsize=(max(4.0, width_m * scale + 1.0), max(3.5, height_m * scale + 1.2)), dpi=120, layout="constrained")
+    figure = Figure(figsize=(max(4.0, width_m * scale + 1.0), max(3.5, height_m * scale + 1.7)), dpi=120, layout="constrained")
     axes = figure.add_subplot()
     _draw_world(axes, world)
     _draw_track(axes, runner)
-    for contact in result.contacts:
-        axes.plot(contact["x_m"], contact["y_m"], "x", color=CONTACT, markersize=10, markeredgewidth=2.5, zorder=6)
+    for number, contact in enumerate(result.contacts):
+        axes.plot(contact["x_m"], contact["y_m"], "x", color=CONTACT, markersize=10, markeredgewidth=2.5, zorder=6, label="" if number else "contact")
     axes.set(xlim=(x_min, x_max), ylim=(y_min, y_max), aspect="equal", xlabel="x (m)", ylabel="y (m)")
+    figure.legend(loc="outside lower left", ncols=6, frameon=False, fontsize=8, labelcolor=INK)
     reason = f" ({result.reason})" if result.reason else ""
     axes.set_title(f"{result.mission} in {result.world}: {result.result}{reason}, {result.distance_m:.1f} m in {result.sim_time_s:.1f} s, "
                    f"collisions {result.collisions}", fontsize=10, color=INK)  # fmt: skip
@@ -74,6 +75,8 @@ def _draw_world(axes: Any, world: World) -> None:
         way = np.vstack([actor.waypoints, actor.waypoints[:1]]) if actor.loop else actor.waypoints
         axes.plot(*way.T, ":", color=ACTOR, linewidth=1)
         axes.add_patch(_circle(actor.waypoints[0], actor.radius_m, ACTOR))
+    if world.actors:
+        axes.plot([], [], "o", color=ACTOR, markersize=7, label="who walks, at the start")
     for goal in world.goals:
         axes.plot(goal.x_m, goal.y_m, "o", color=GOAL, markersize=5)
         axes.annotate(goal.id, (goal.x_m, goal.y_m), textcoords="offset points", xytext=(5, 5), fontsize=7, color=GOAL)
@@ -104,11 +107,13 @@ def _draw_track(axes: Any, runner: Runner) -> None:
     if not points:
         return
     track = np.array([point.pose for point in points])
-    axes.plot(track[:, 0], track[:, 1], color=PATH, linewidth=1.8, zorder=4)
+    axes.plot(track[:, 0], track[:, 1], color=PATH, linewidth=1.8, zorder=4, label="path")
     outline = np.array(runner.inputs.robot.body.outline_m)
     for index in np.unique(np.linspace(0, len(track) - 1, OUTLINES).astype(int)):
         corners = placed_outline(outline, tuple(track[index]))
         is_end = index in (0, len(track) - 1)
         axes.plot(*np.vstack([corners, corners[:1]]).T, color=PATH, linewidth=1.2 if is_end else 0.5, alpha=1.0 if is_end else 0.35, zorder=4)
-    for x, y in runner.goals():
-        axes.plot(x, y, "*", color=GOAL, markersize=13, zorder=5)
+    axes.plot(*track[0, :2], "o", color=PATH, markersize=7, markerfacecolor="white", zorder=5, label="start")
+    axes.plot(*track[-1, :2], "o", color=PATH, markersize=7, zorder=5, label="end")
+    for number, (x, y) in enumerate(runner.goals()):
+        axes.plot(x, y, "*", color=GOAL, markersize=13, zorder=5, label="" if number else "goals")

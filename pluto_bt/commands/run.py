@@ -34,9 +34,20 @@ def _parser() -> Parser:
     parser.add_argument("--watch", action="store_true", help="show the live tree on the terminal")
     parser.add_argument("--plot", metavar="FILE", help="draw world, path, goals and contacts (.png or .svg)")
     parser.add_argument("--trace", metavar="FILE.jsonl", help="write one line a tick and a command")
+    parser.add_argument("--record", metavar="FILE.mcap", help="write a black box, for `pluto replay`, `pluto why` and Foxglove")
+    parser.add_argument("--resume", choices=("hold", "ask", "resume"), help="keep a journal; after a crash stay still, ask, or go on where it was")
+    parser.add_argument("--journal", metavar="FILE", help="with --resume: where the journal lies (default: one for each mission in the state folder)")
     parser.add_argument("--gateway", metavar="HOST:PORT", help="serve the TCP/XML gateway (default with --realtime: 127.0.0.1:7500)")
     parser.add_argument("--json", action="store_true", help="end with one JSON object on the last line")
     return parser
+
+
+def _confirm(question: str) -> bool:
+    """A question at the terminal; without one the answer is no."""
+    if not sys.stdin.isatty():
+        return False
+    print(f"{question} [y/N] ", end="", file=sys.stderr, flush=True)
+    return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
 def _run(args: argparse.Namespace) -> RunResult:
@@ -57,8 +68,11 @@ def _run(args: argparse.Namespace) -> RunResult:
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
     progress = Progress(sys.stderr if args.json else sys.stdout, watch=args.watch)
-    runner = make_runner(inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, gateway=args.gateway,
-                         on_event=progress.event, on_progress=progress.show)  # fmt: skip
+    runner = make_runner(
+        inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record, resume=args.resume,
+        journal=args.journal, is_placed=args.start is not None, confirm=_confirm, gateway=args.gateway, on_event=progress.event,
+        on_progress=progress.show,
+    )  # fmt: skip
     with runner.interruptible():
         result = runner.run()
     progress.end(result)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from pluto_bt.maps.arnl_map import FIRST_LINES, read_arnl_map
@@ -48,7 +49,8 @@ def read_map(path: Path, shown_name: str, faults: Faults) -> World | None:
     if kind == "ros":
         return read_ros_map(path, shown_name, faults)
     if kind == "arnl":
-        return read_arnl_map(path, shown_name, faults)
+        arnl = read_arnl_map(path, shown_name, faults)
+        return None if arnl is None else replace(arnl, files=(str(path),))
     if kind == "xml":
         expected = "a ROS map (.yaml) or an ARNL map (.map)"
         faults.error(Place(shown_name), "bad-value", "this is a world, not a map", expected=expected, found=path.suffix)

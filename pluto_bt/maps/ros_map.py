@@ -52,7 +52,7 @@ def read_ros_map(path: Path, shown_name: str, faults: Faults) -> World | None:
     if image is None or fields.has_errors:
         return None
     grid = OccupancyGrid(*cells(_lowest_first(image), mode, negate, occupied, free), resolution_m, origin)
-    return World(name=Path(shown_name).stem, file=shown_name, grid=grid)
+    return World(name=Path(shown_name).stem, file=shown_name, grid=grid, files=(str(path), str(path.parent / str(values["image"]))))
 
 
 def cells(

@@ -24,12 +24,12 @@ class WorldParts:
     map: World | None = None
     script: list[At | When] = field(default_factory=list)
 
-    def world(self, name: str, file: str, seed: int) -> World:
+    def world(self, name: str, file: str, seed: int, path: str) -> World:
         """The whole; what the file says of home and robot goes before what its map says."""
         base = self.map or World(name="")
         return World(
             name=name, file=file, seed=seed, grid=base.grid, shapes=(*base.shapes, *self.shapes), areas=(*base.areas, *self.areas),
             lines=(*base.lines, *self.lines), goals=(*base.goals, *self.goals), home=self.home or base.home, markers=tuple(self.markers),
             shadows=tuple(self.shadows), actors=tuple(self.actors), terrains=tuple(self.terrains), robot=self.robot or base.robot,
-            script=tuple(self.script),
+            script=tuple(self.script), files=(path, *base.files),
         )  # fmt: skip

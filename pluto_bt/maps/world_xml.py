@@ -73,7 +73,7 @@ class _WorldReading:
         for child in root.children:  # a script may stand before what it names
             if child.tag == "script":
                 self._found.script += read_script(child, self._ids, self._faults, ENOUGH_FAULTS)
-        return self._found.world(name, self._shown, seed)
+        return self._found.world(name, self._shown, seed, str(self._path))
 
     # ------------------------------------------------------------------ one of a kind
 
@@ -122,6 +122,7 @@ class _WorldReading:
         if fields.has("x") or fields.has("y") or fields.has("theta_deg"):
             pose = (fields.number("x"), fields.number("y"), fields.angle_rad("theta_deg"))
         if not second:
+            self._ids.robot = name
             self._found.robot = RobotStart(name, platform, pose, ideal, fields.place)
         fields.done()
 

@@ -13,8 +13,10 @@ from pluto_bt.blackboard import Blackboard, Inbox
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.modules.job_box import JobBox
+from pluto_bt.modules.notebook import Notebook
 from pluto_bt.modules.post_box import PostBox
 from pluto_bt.runtime import Clock
+from pluto_bt.runtime.clock import StepClock
 from pluto_bt.runtime.latch import SafetyLatch
 
 if TYPE_CHECKING:
@@ -46,6 +48,8 @@ class Context:
         posts: where improved poses wait for `local`.
         jobs: where motion orders the jobs 42 to 45 from the executive.
         order_module: (name, run) → start or stop a module.
+        own_clock: the clock of trees where `clock` itself flows.
+        black_box: what waits to be written to the black box; None = this run is not recorded.
     """
 
     board: Blackboard
@@ -63,6 +67,13 @@ class Context:
     jobs: JobBox = field(default_factory=JobBox)
     order_module: Callable[[str, bool], None] = lambda name, run: None
     joined: System | None = None
+    own_clock: StepClock | None = None
+    black_box: Notebook | None = None
+
+    @property
+    def mission_clock(self) -> Clock:
+        """The time that trees live in; it stands still while a tick lasts."""
+        return self.own_clock or self.clock
 
     def parameters(self, kind: type[T]) -> T:
         """The table of the robot file that `kind` declares; its defaults where the file has none."""

@@ -10,6 +10,8 @@ import msgspec
 from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, Pose, TreeState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.job_runner import JobRunner
+from pluto_bt.modules.journal_keeper import JournalKeeper
+from pluto_bt.modules.tick_log import TickLog
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
@@ -32,10 +34,13 @@ class Executive:
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
-        self._jobs = JobRunner(context, self.core, context.system.robot)
+        self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
         self._shown_statuses = ""
         self._steps = 0
+        self._own_clock = context.own_clock
+        self.keeper: JournalKeeper | None = None
+        self._log = TickLog(context, self.core, context.black_box) if context.black_box is not None else None
 
     def start(self, now_s: float) -> None:
         """Nothing to take."""
@@ -50,11 +55,20 @@ class Executive:
 
     def step(self, now_s: float) -> None:
         """One turn of the executive, then what changed goes to the blackboard."""
+        if self._own_clock is not None:
+            self._own_clock.step_to(now_s)
         self._jobs.take_orders()
         ticked = self.core.step(now_s)
         self._jobs.tell(now_s)
+        lines = [activity.mission.status_line() for activity in ticked]
         if ticked:
-            self._show_trees(ticked, now_s)
+            self._show_trees(ticked, lines, now_s)
+        if self.keeper is not None:
+            self._keep(self.keeper, ticked, now_s)
+        if self._log is not None:
+            self._log.step(now_s, ticked, lines)
+        else:
+            self.core.take_done()
         self._show_mission(now_s)
         if self._steps % SHOW_MODULES_EVERY == 0:
             self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._system.parts)), now_s)
@@ -68,9 +82,24 @@ class Executive:
             self._events.put(event, now_s)
             self.on_event(event)
 
-    def _show_trees(self, ticked: list[Activity], now_s: float) -> None:
+    def _keep(self, keeper: JournalKeeper, ticked: list[Activity], now_s: float) -> None:
+        """The journal of the mission, before anybody else acts on what it decided."""
+        mission = self.core.mission
+        if mission is None or mission not in ticked:
+            keeper.look(now_s)
+            return
+        keeper.after_tick(now_s, mission.ticks)
+        if mission.is_over:
+            keeper.end()
+            self.keeper = None
+
+    def note_end(self, now_s: float) -> None:
+        """The run is over: note how things stand, also if the executive itself hangs."""
+        if self._log is not None:
+            self._log.step(now_s, [], [])
+
+    def _show_trees(self, ticked: list[Activity], lines: list[str], now_s: float) -> None:
         """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""
-        lines = [activity.mission.status_line() for activity in ticked]
         for activity, statuses in zip(ticked, lines, strict=True):
             self._record(activity, statuses)
         shown = " ".join(lines)

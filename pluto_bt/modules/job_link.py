@@ -21,6 +21,7 @@ class JobLink(RobotLink):
     def __init__(self, context: Context, robot: RobotLink, job: Job) -> None:
         super().__init__(context)
         self._robot, self._job = robot, job
+        self.on_command = robot.on_command
         self._last: Ticket | None = None
         self.moveto, self.motion = MovetoStatus.NONE, MotionStatus.SCANNING_FOR_PATHS
         self._surroundings = robot.surroundings
@@ -30,15 +31,22 @@ class JobLink(RobotLink):
         self._snapshot = self._robot.snapshot
 
     def command(
-        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> Ticket:
         """Post a command for motion to pass down. A goto that has arrived stands already: no zero velocity takes its status away."""
         if flags == 0 and velocity == (0.0, 0.0) and self._has_arrived():
             assert self._last is not None
             return self._last
         forces = force if isinstance(force, tuple) else (force,)
-        command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
-        self._last = Ticket(command, self._context.inboxes[INBOX].post(self._job.source, command))
+        command = ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
+        self._last = self._post(INBOX, self._job.source, command)
         return self._last
 
     def status(self, ticket: Ticket) -> FVectorState | None:

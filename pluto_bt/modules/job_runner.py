@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from importlib import resources
 from typing import Any
 
@@ -24,8 +25,8 @@ DONE = {MotionCommand.INVESTIGATE: MovetoStatus.INVESTIGATE_DONE}
 class JobRunner:
     """Beside the executive's mission: at most one job."""
 
-    def __init__(self, context: Context, core: Executive, robot: RobotLink) -> None:
-        self._context, self._core, self._robot = context, core, robot
+    def __init__(self, context: Context, core: Executive, robot: RobotLink, load: Callable[..., Mission]) -> None:
+        self._context, self._core, self._robot, self._read = context, core, robot, load
         self._state = context.board.publisher("motion/job", "executive")
         self._map = LocalMapShown(context)
         self._job: Job | None = None
@@ -37,6 +38,7 @@ class JobRunner:
         is_new, job = self._context.jobs.take()
         if not is_new:
             return
+        self._core.note("job", text=msgspec.json.encode(job).decode())
         self._core.end_job("stopped")
         self._job = self._link = None
         if job is not None:
@@ -70,7 +72,7 @@ class JobRunner:
         }
         ports = {"avoid": avoid, "max_speed_mps": job.speed_mps, **own[job.kind]}
         path = resources.files("pluto_bt.trees") / "library" / f"{job.tree}.xml"
-        return self._context.system.options.load(str(path), ports={name: text_of(value) for name, value in ports.items()})
+        return self._read(str(path), ports={name: text_of(value) for name, value in ports.items()})
 
     def _tell(self, now_s: float, state: JobState) -> None:
         if state != self._shown:

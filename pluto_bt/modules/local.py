@@ -23,6 +23,7 @@ from pluto_bt.blackboard.messages import Pose, ScanTiming
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import LaserMount, laser_pose
+from pluto_bt.modules.motion_check_shown import MotionCheckShown
 from pluto_bt.modules.motion_sources import MotionSources
 from pluto_bt.modules.post_box import refusal
 
@@ -56,6 +57,7 @@ class Local:
         self._parameters = p
         self._say = context.say
         self._sources = MotionSources(context, p.step_noise(), p.yaw_enable)
+        self._check = MotionCheckShown(context, self._sources.check)
         self._mount = LaserMount(context)
         self._box = context.posts
         self.track = Track(context.start_pose)
@@ -89,6 +91,7 @@ class Local:
         if step is not None or posts:
             self._publish_poses(now_s)
         self._serve_scan(now_s)
+        self._check.tell(now_s)
 
     def _publish_poses(self, now_s: float) -> None:
         now = self.track.now
@@ -105,6 +108,8 @@ class Local:
             self._say("warning", refused, "local", f"pose posted by {source} at {post.stamp_s:.3f} s not taken: {refused}")
             return
         self._box.set_by, self._setter_s = post.setter, now_s
+        if post.setter != Setter.NOBODY:
+            self._check.found(now_s)
         self._post_pose.put(post, now_s)
 
     def _adjust(self, post: Pose) -> str:
@@ -144,6 +149,7 @@ class Local:
         if then is None or arm is None:
             self.dropped += 1
             return
+        self._check.look(stamp_s, arm, then.tilt)
         increment = self.track.increment_covariance(-math.inf if self._scan_s is None else self._scan_s, stamp_s)
         self._scan_s = stamp_s
         self._laser_dead_reckoning.put(laser_pose(stamp_s, then.pose_odom, then.tilt, arm, increment, Setter.NOBODY), now_s)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from pluto_bt.blackboard import Blackboard
+from pluto_bt.blackboard import Blackboard, Snapshot
 from pluto_bt.blackboard.messages import ActuatorState, LaserScan
 from pluto_bt.blackboard.poses import actuator_at
 from pluto_bt.maps.platform import Platform
@@ -15,7 +15,7 @@ from pluto_bt.skills.sight import ScanView
 class LaserMount:
     """The mount of one robot."""
 
-    def __init__(self, board: Blackboard, platform: Platform) -> None:
+    def __init__(self, board: Blackboard | Snapshot, platform: Platform) -> None:
         laser = platform.devices.laser
         self._board = board
         self._has_wrist = platform.devices.wrist is not None

@@ -17,11 +17,15 @@ from pluto_bt.modules.calibration import read_calibration
 from pluto_bt.modules.dmu import DmuParameters
 from pluto_bt.modules.local import LocalParameters
 from pluto_bt.modules.marker import MarkerParameters
+from pluto_bt.modules.record_parameters import RecordParameters
+from pluto_bt.modules.resume_parameters import ResumeParameters
 from pluto_bt.runtime.parameters import build, override
 from pluto_bt.skills.avoid import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.plan_parameters import PlanParameters
+from pluto_bt.skills.wall_parameters import WallParameters
 from pluto_bt.source import Faults, InputError, Place, did_you_mean
 from pluto_bt.source.text import read_text
 from pluto_bt.source.toml_reader import MAX_TOML_BYTES, read_toml
@@ -34,13 +38,17 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     drive: DriveParameters = DriveParameters()
     avoid: AvoidParameters = AvoidParameters()
+    wall: WallParameters = WallParameters()
     motion: MotionParameters = MotionParameters()
+    plan: PlanParameters = PlanParameters()
     filter: FilterParameters = FilterParameters()
 
     local: LocalParameters = LocalParameters()
     dmu: DmuParameters = DmuParameters()
     alarms: AlarmsParameters = AlarmsParameters()
     marker: MarkerParameters = MarkerParameters()
+    record: RecordParameters = RecordParameters()
+    resume: ResumeParameters = ResumeParameters()
 
 
 def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | None = None) -> RobotFile:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard import Snapshot
@@ -14,6 +15,7 @@ from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.scan_views import ScanViews
 from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.plan_parameters import PlanParameters
 from pluto_bt.skills.sight import ScanView
 
 SOURCE = "mission"
@@ -27,10 +29,13 @@ class RobotLink:
 
     def __init__(self, context: Context) -> None:
         self._context = context
-        self._snapshot = context.board.snapshot(context.clock.now_s())
+        self.reads: set[int] = set()  # rows of the topics that trees have asked for
+        self.on_command: Callable[[str, Ticket], None] = lambda to, ticket: None  # the black box listens here
+        self._snapshot = context.board.snapshot(context.clock.now_s(), self.reads)
         self.resumes = 0
         self.goals: list[Pair] = []  # where missions sent the robot, for pictures
         self._surroundings: Surroundings | None = None
+        self._navigation: Navigation | None = None
         self._views: ScanViews | None = None
         self._goal_s = -AMENDED_WITHIN_S
 
@@ -51,7 +56,7 @@ class RobotLink:
 
     def refresh(self, now_s: float) -> None:
         """Take the snapshot that the next tick sees."""
-        self._snapshot = self._context.board.snapshot(now_s)
+        self._snapshot = self._context.board.snapshot(now_s, self.reads)
 
     @property
     def surroundings(self) -> Surroundings:
@@ -60,21 +65,46 @@ class RobotLink:
             self._surroundings = Surroundings(self._context.platform, self._context.parameters(MotionParameters))
         return self._surroundings
 
+    @property
+    def navigation(self) -> Navigation:
+        """Planning on the map; made when it is first asked for."""
+        if self._navigation is None:
+            context = self._context
+            self._navigation = Navigation(context.platform, context.map, self.surroundings, context.parameters(PlanParameters))
+        return self._navigation
+
     def scan_views(self) -> Sequence[ScanView]:
         """The laser scans since the last call, with the places they were taken from."""
         if self._views is None:
-            self._views = ScanViews(self._context)
-        return self._views.new()
+            self._views = ScanViews(self._context.platform)
+        return self._views.new(self._snapshot)
 
     def command(
-        self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float | tuple[float, ...] = 1.0
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float | tuple[float, ...] = 1.0,
+        *,
+        on_the_way: bool = False,
     ) -> Ticket:
         """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
         forces = force if isinstance(force, tuple) else (force,)
-        command = ActuatorState(self._context.clock.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
-        if flags == MotionCommand.MOVETO or (0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO):
+        command = ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
+        is_goto = 0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO
+        if flags == MotionCommand.MOVETO or (is_goto and not on_the_way):
             self._note_goal(position, command.stamp_s)
-        return Ticket(command, self._context.inboxes["motion"].post(SOURCE, command))
+        return self._post("motion", SOURCE, command)
+
+    def _post(self, to: str, source: str, command: ActuatorState) -> Ticket:
+        ticket = Ticket(command, self._context.inboxes[to].post(source, command))
+        self.on_command(to, ticket)
+        return ticket
+
+    def now_s(self) -> float:
+        """The moment that trees live in: one and the same through a whole tick."""
+        return self._context.mission_clock.now_s()
 
     def _note_goal(self, goal: Pair, now_s: float) -> None:
         is_new = now_s - self._goal_s >= AMENDED_WITHIN_S and goal not in self.goals
@@ -104,17 +134,16 @@ class RobotLink:
 
     def point_wrist(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
         """Post a command to the wrist, both axes alike."""
-        now_s = self._context.clock.now_s()
         rates, accelerations = (rate_radps, rate_radps), (acceleration_radps2, acceleration_radps2)
-        self._context.inboxes["wrist"].post(SOURCE, ActuatorState(now_s, 0, (pan_rad, tilt_rad), rates, accelerations))
+        self._post("wrist", SOURCE, ActuatorState(self.now_s(), 0, (pan_rad, tilt_rad), rates, accelerations))
 
     def move_arm(self, share: float) -> None:
         """Post a command to the arm."""
-        self._context.inboxes["arm"].post(SOURCE, ActuatorState(self._context.clock.now_s(), 0, (share, 0.0)))
+        self._post("arm", SOURCE, ActuatorState(self.now_s(), 0, (share, 0.0)))
 
     def read_alarms(self) -> None:
         """Leave a letter for the module `alarms`."""
-        self._context.inboxes["alarms"].post(SOURCE, ActuatorState(self._context.clock.now_s()))
+        self._post("alarms", SOURCE, ActuatorState(self.now_s()))
 
     def say(self, text: str) -> None:
         """A line for operators."""

@@ -102,9 +102,32 @@ class MonotonicClock:
         return self.now_ns() / NS
 
 
-def wall_ns() -> int:
-    """The wall's monotonic nanoseconds, for measuring and for the watchdog; never for decisions that a trace holds."""
-    return time.perf_counter_ns()
+class StepClock:
+    """A clock that stands still until it is told the time: where real time flows, a tick of the tree still sees one moment."""
+
+    def __init__(self) -> None:
+        self._now_s = 0.0
+
+    def now_ns(self) -> int:
+        """Nanoseconds of the run at the last step."""
+        return round(self._now_s * NS)
+
+    def now_s(self) -> float:
+        """Seconds of the run at the last step."""
+        return self._now_s
+
+    def step_to(self, now_s: float) -> None:
+        """It is `now_s`, until the next call."""
+        self._now_s = now_s
+
+
+wall_ns = time.perf_counter_ns
+"""The wall's monotonic nanoseconds, for measuring and for the watchdog; never for decisions that a trace holds."""
+
+
+def calendar_ns() -> int:
+    """Nanoseconds since 1970, for what outlives a run; never for decisions within one."""
+    return time.time_ns()
 
 
 def wait(event: threading.Event, seconds: float) -> bool:

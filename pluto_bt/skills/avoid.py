@@ -1,36 +1,36 @@
-"""Avoidance: laser protection for what it passes down, and goto (Pluto manual, 6.2). `cmdFlags` = 10·A + T.
+"""Avoidance: laser protection for what it passes down, goto and wall follow (Pluto manual, 6.2). `cmdFlags` = 10·A + T.
 
 Orders and their amendments. What comes from above is an order; its time of acceptance is the stamp of every command that goes down for
 it. A pass-through (T = 0, 1) is posted once; when laser protection slows it, or the heading of T = 1 has to follow the adjusted pose,
 the amended command is posted under the stamp of the order, and drive counts its 4 s from the first of one stamp. So the timeout of the
-order still fires. Goto gives a new order in each cycle, with the stamp of the cycle.
+order still fires. Goto and wall follow give a new order in each cycle, with the stamp of the cycle.
 """
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, split_flags
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, SonarState
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters, drive_limits, is_finite
 from pluto_bt.skills.goto import Goto
-from pluto_bt.skills.heading import regulate, wrap
-from pluto_bt.skills.limits import STILL, Twist, within
+from pluto_bt.skills.heading import regulate
+from pluto_bt.skills.limits import STILL, Limits, Twist, within
 from pluto_bt.skills.outline import Array, Planar, outline_of
+from pluto_bt.skills.protection import Protection
 from pluto_bt.skills.sight import ScanView, Sight
-from pluto_bt.skills.sonar import where_word
-from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
 from pluto_bt.skills.verdict import ALL_WELL, Verdict, kept
+from pluto_bt.skills.wall_follow import WallFollow, WallStatus
+from pluto_bt.skills.wall_parameters import WallParameters
 
 __all__ = ["Avoid", "AvoidParameters", "AvoidSenses"]
 
 SAME_MPS, SAME_RAD = 0.01, 0.004  # smaller changes of a command in force are not worth a new post
-REFRESH_S = 1.0  # a goto that has ended renews its zero velocity so often, so that drive does not time out
-AWAIT_S = 0.6  # who would walk into the robot within so long after it could have stopped is awaited standing
+REFRESH_S = 1.0  # a goto or wall follow that has ended renews its zero velocity so often, so that drive does not time out
 LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean the platform's
 
 
@@ -38,7 +38,7 @@ class AvoidSenses(NamedTuple):
     """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
 
     `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force,
-    `waits_for_walker`: the stop filter holds the robot back because of somebody.
+    `waits_for_walker`: the stop filter holds the robot back because of somebody; `no_pose`: why there is no `pose`.
     """
 
     pose: Planar | None
@@ -48,19 +48,22 @@ class AvoidSenses(NamedTuple):
     view: ScanView | None = None
     sonar: SonarState | None = None
     waits_for_walker: bool = False
+    no_pose: Verdict = Verdict(reason=reasons.NO_POSE, text="waits until it is known where the robot is")
 
 
 class Avoid:
     """The state of avoidance between two steps. `step` gives the command for drive, or None where the last one still holds."""
 
-    def __init__(self, platform: Platform, parameters: AvoidParameters, drive: DriveParameters) -> None:
+    def __init__(self, platform: Platform, parameters: AvoidParameters, drive: DriveParameters, wall: WallParameters) -> None:
         self.parameters = parameters
         self._limits = drive_limits(platform, drive)
         self._outline = outline_of(platform.body.outline_m)
         motors = platform.limits
-        self._latency_s = parameters.period_s + drive.period_s + motors.motor_latency_s + motors.motor_time_constant_s
+        latency_s = parameters.period_s + drive.period_s + motors.motor_latency_s + motors.motor_time_constant_s
         self._goto = Goto(self._outline, self._limits, parameters)
+        self._wall = WallFollow(self._outline, self._limits, wall, parameters)
         self.sight = Sight(platform, parameters, self._outline)
+        self._protection = Protection(self.sight, self._outline, self._limits, latency_s)
         self.reset()
 
     def reset(self) -> None:
@@ -77,13 +80,15 @@ class Avoid:
         """Take an order."""
         self.command, self._order_s, self._posted = command, now_s, None
         self._kind = split_flags(command.flags) if is_finite(command) else None
-        if self._kind is not None and self._kind[1] is CommandType.WALL_FOLLOW:
-            self._kind = None
-        self.goto_status = GotoStatus.NONE
+        kind = None if self._kind is None else self._kind[1]
+        self.goto_status = GotoStatus.RUNNING if kind is CommandType.GOTO else GotoStatus.NONE
         self.verdict = ALL_WELL
-        if self._kind is not None and self._kind[1] is CommandType.GOTO:
+        self.sight.widen(0.0)
+        if kind is CommandType.GOTO:
             self._goto.begin(command, now_s)
-            self.goto_status = GotoStatus.RUNNING
+        elif kind is CommandType.WALL_FOLLOW:
+            self._wall.begin(command)
+            self.sight.widen(self._wall.reach_m)
 
     def stop(self, command: ActuatorState) -> None:
         """Stop was commanded: there is no order any more. The adapter sends the stop down."""
@@ -104,6 +109,8 @@ class Avoid:
         avoidance, kind = self._kind
         if kind is CommandType.GOTO:
             return self._step_goto(now_s, dt_s, senses, avoidance)
+        if kind is CommandType.WALL_FOLLOW:
+            return self._step_wall(now_s, dt_s, senses, avoidance)
         return self._pass_down(now_s, senses, avoidance, kind)
 
     def status(self, now_s: float, drive: FVectorState | None, drive_has_it: bool) -> FVectorState:
@@ -114,14 +121,14 @@ class Avoid:
         if drive is not None and not verdict.code and (drive_has_it or drive.element[0] == LinkStatus.STOPPED_THREAD):
             code = drive.element[0]
             if not reason:
-                reason, text = drive.reason, drive.text
+                reason, text = drive.reason, drive.text or text
         return FVectorState(now_s, data, (code, int(self.goto_status)), reason, text)
 
     # -------------------------------------------------------------- what goes down
 
     def _refuse(self, command: ActuatorState) -> ActuatorState | None:
         """Zero velocity for what is not known."""
-        text = f"avoidance takes cmdFlags 10*A + T with A 0 to 3, T 0 to 2 and finite numbers, or -1; not {command.flags}"
+        text = f"avoidance takes cmdFlags 10*A + T with A 0 to 3, T 0 to 3 and finite numbers, or -1; not {command.flags}"
         self.verdict = kept(self.verdict, Verdict(reason=reasons.BAD_COMMAND, text=text))
         return self._post(0, 0.0, STILL, self._order_s)
 
@@ -133,13 +140,13 @@ class Avoid:
         if kind is CommandType.VELOCITY:
             twist = within(self.command.velocity, self._limits)
         elif senses.pose is None or raw_rad is None:
-            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading is commanded, and nobody knows where the robot points"))
+            self.verdict = kept(self.verdict, senses.no_pose)
             return self._post(0, 0.0, STILL, self._order_s)
         else:
             heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
             speed_mps, most_radps = self.command.velocity
-            twist = within(regulate(wrap(heading_rad - raw_rad), speed_mps, self._limits, max(0.0, most_radps)), self._limits)
-        share, verdict = self._laser_share(now_s, senses, avoidance, twist)
+            twist = within(regulate(wrap_angle(heading_rad - raw_rad), speed_mps, self._limits, max(0.0, most_radps)), self._limits)
+        share, verdict = self._protection.laser_share(now_s, senses.dead, senses.twist, avoidance, twist)
         self.verdict = kept(self.verdict, verdict)
         v, w = self.command.velocity
         if share >= 1.0:
@@ -150,35 +157,70 @@ class Avoid:
 
     def _step_goto(self, now_s: float, dt_s: float, senses: AvoidSenses, avoidance: Avoidance) -> ActuatorState | None:
         """T = 2: steer and adapt the speed; zero velocity when it is there, stuck, or cannot know."""
-        flags = 11 if avoidance & Avoidance.SONAR else 1
-        raw_rad = senses.raw_heading_rad
         if self.goto_status is not GotoStatus.RUNNING:
-            last = self._posted
-            return self._post(0, 0.0, STILL, now_s) if last is None or last.velocity != STILL or now_s - last.stamp_s >= REFRESH_S else None
-        fault = self._goto_fault(now_s, senses, avoidance)
-        if fault != ALL_WELL or senses.pose is None or senses.dead is None or raw_rad is None:
+            return self._rest(now_s)
+        fault = self._blindness(now_s, senses, avoidance)
+        if fault != ALL_WELL or senses.pose is None or senses.dead is None:
             self.verdict = kept(self.verdict, fault)
             self._goto.pause(now_s, dt_s)
             return self._post(0, 0.0, STILL, now_s)
         if senses.waits_for_walker:
             self._goto.pause(now_s, dt_s)
-        points = self.sight.points(senses.dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR), now_s)
+        points = self._points(now_s, senses.dead, avoidance)
         way = self._goto.step(now_s, senses.pose, senses.dead, points)
         self.goto_status = way.status
         if way.status is not GotoStatus.RUNNING:
             reason = reasons.STUCK if way.status is GotoStatus.STUCK else ""
             self.verdict = Verdict(reason=reason, text=way.text)
             return self._post(0, 0.0, STILL, now_s)
-        limits = self._goto.limits
-        twist = within(regulate(way.turn_rad, way.speed_mps, limits), limits)
-        share, verdict = self._clear_share(points, twist, senses.twist)
-        self.verdict = kept(self.verdict, verdict)
+        share, command = self._steered(now_s, senses, avoidance, points, way.speed_mps, way.turn_rad, self._goto.limits)
         if share == 0.0 and way.speed_mps < 0.0:
             self._goto.give_up_backing()
-        heading_rad = raw_rad + way.turn_rad
+        return command
+
+    def _step_wall(self, now_s: float, dt_s: float, senses: AvoidSenses, avoidance: Avoidance) -> ActuatorState | None:
+        """T = 3: along the wall; zero velocity where there is none, and when it is lost, stuck, or cannot know."""
+        fault = self._blindness(now_s, senses, avoidance)
+        if avoidance is Avoidance.NONE:
+            fault = Verdict(reason=reasons.NO_WALL, text="A = 0 asks no sensor for the wall")
+        if fault != ALL_WELL or senses.dead is None:
+            self.verdict = kept(self.verdict, fault)
+            self._wall.pause(dt_s)
+            return self._rest(now_s)
+        if senses.waits_for_walker:
+            self._wall.pause(dt_s)
+        points = self._points(now_s, senses.dead, avoidance)
+        along = self._wall.step(now_s, senses.dead, points, self.sight.scan_s)
+        if along.status is not WallStatus.FOLLOWING:
+            self.verdict = kept(self.verdict, Verdict(reason=along.status.value, text=along.text))
+            return self._rest(now_s)
+        command = self._steered(now_s, senses, avoidance, points, along.speed_mps, along.turn_rad, self._wall.limits)[1]
+        if self.verdict.reason == "":
+            self.verdict = Verdict(text=along.text)
+        return command
+
+    def _rest(self, now_s: float) -> ActuatorState | None:
+        """Zero velocity, renewed now and then."""
+        last = self._posted
+        return self._post(0, 0.0, STILL, now_s) if last is None or last.velocity != STILL or now_s - last.stamp_s >= REFRESH_S else None
+
+    def _points(self, now_s: float, dead: Planar, avoidance: Avoidance) -> Array:
+        """What stands around the robot, as far as the sensors that A names see it."""
+        return self.sight.points(dead, bool(avoidance & Avoidance.LASER), bool(avoidance & Avoidance.SONAR), now_s)
+
+    def _steered(
+        self, now_s: float, senses: AvoidSenses, avoidance: Avoidance, points: Array, speed_mps: float, turn_rad: float, limits: Limits
+    ) -> tuple[float, ActuatorState | None]:
+        """The regulator command that turns by `turn_rad` at a speed, slowed where something is in the way; and the share that was let through."""
+        assert senses.raw_heading_rad is not None  # else `_blindness` had spoken
+        flags = 11 if avoidance & Avoidance.SONAR else 1
+        twist = within(regulate(turn_rad, speed_mps, limits), limits)
+        share, verdict = self._protection.clear_share(points, twist, senses.twist)
+        self.verdict = kept(self.verdict, verdict)
+        heading_rad = senses.raw_heading_rad + turn_rad
         if share >= 1.0:
-            return self._post(flags, heading_rad, (way.speed_mps, limits.turn_rate_radps), now_s)
-        return self._post(flags, *self._slow_turn(way.speed_mps, heading_rad, raw_rad, twist, share), now_s)
+            return share, self._post(flags, heading_rad, (speed_mps, limits.turn_rate_radps), now_s)
+        return share, self._post(flags, *self._slow_turn(speed_mps, heading_rad, senses.raw_heading_rad, twist, share), now_s)
 
     def _slow_turn(self, speed_mps: float, heading_rad: float, raw_rad: float, twist: Twist, share: float) -> tuple[float, Twist]:
         """Heading and velocities of a regulator command that drive turns into `share` of `twist`."""
@@ -197,57 +239,12 @@ class Avoid:
         self._posted = ActuatorState(stamp_s, flags, (0.0, heading_rad), velocity)
         return self._posted
 
-    # -------------------------------------------------------------- protection
-
-    def _goto_fault(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance) -> Verdict:
-        """Why goto cannot know where to go."""
-        if senses.pose is None or senses.dead is None or senses.raw_heading_rad is None:
-            return Verdict(reason=reasons.NO_POSE, text="goto waits until it is known where the robot is")
+    def _blindness(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance) -> Verdict:
+        """Why a job that steers cannot know where to go."""
+        needs_pose = self._kind is not None and self._kind[1] is CommandType.GOTO
+        if (needs_pose and senses.pose is None) or senses.dead is None or senses.raw_heading_rad is None:
+            return senses.no_pose
         fault = self.sight.laser_fault(now_s) if avoidance & Avoidance.LASER else ALL_WELL
         if fault == ALL_WELL and avoidance & Avoidance.SONAR:
             fault = self.sight.sonar_fault(now_s)
         return fault
-
-    def _laser_share(self, now_s: float, senses: AvoidSenses, avoidance: Avoidance, twist: Twist) -> tuple[float, Verdict]:
-        """How much of a passed-down twist the laser allows, and why not all."""
-        if not avoidance & Avoidance.LASER or self.sight.laser is None:
-            return 1.0, ALL_WELL
-        fault = self.sight.laser_fault(now_s)
-        if fault.code is LinkStatus.LASER_FATAL or (fault != ALL_WELL and twist != STILL):
-            return 0.0, fault
-        if twist == STILL:
-            return 1.0, ALL_WELL
-        if senses.dead is None:
-            return 0.0, Verdict(LinkStatus.LASER_SLOW_STOP, reasons.NO_POSE, "without dead reckoning it is not known where the obstacles are now")
-        share, verdict = self._clear_share(self.sight.points(senses.dead, True, False, now_s), twist, senses.twist)
-        blind_mps = self.parameters.blind_speed_mps
-        if twist[0] < -blind_mps and not self.sight.sees_behind(bool(avoidance & Avoidance.SONAR)) and share > blind_mps / -twist[0]:
-            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "no sensor sees behind: backing slowly")
-        return share, verdict
-
-    def _clear_share(self, points: Array, wanted: Twist, now: Twist) -> tuple[float, Verdict]:
-        """The share of the wanted twist that can be braked before any point; the twist in force counts too, since it still has to be braked."""
-        share, verdict = 1.0, ALL_WELL
-        for twist in (wanted, now) if _differs(wanted, now) else (wanted,):
-            if twist == STILL:
-                continue
-            span_s = horizon_s(twist, self._limits, self._latency_s)
-            free_s, which = first_contact(points, self._outline.planes, twist[0], twist[1], span_s)
-            allowed = allowed_share(free_s, twist, self._limits, self._latency_s)
-            if allowed < share:
-                share, verdict = allowed, self._seen(points, which)
-        if share > 0.0 and wanted != STILL and points[:, 3:].any():
-            within_s = AWAIT_S + horizon_s(now, self._limits, self._latency_s)
-            _, which = first_contact(points, self._outline.planes, 0.0, 0.0, within_s)
-            if which >= 0:
-                return 0.0, self._seen(points, which)
-        return share, verdict
-
-    def _seen(self, points: Array, which: int) -> Verdict:
-        x_m, y_m = points[which, :2].tolist()
-        text = f"obstacle {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
-        return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, text)
-
-
-def _differs(a: Twist, b: Twist) -> bool:
-    return abs(a[0] - b[0]) > 0.1 or abs(a[1] - b[1]) > 0.15 or not math.isclose(math.copysign(1.0, a[0]), math.copysign(1.0, b[0]))

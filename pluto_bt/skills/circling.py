@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from pluto_bt.skills.heading import wrap
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.limits import Twist
 from pluto_bt.skills.objects import Thing, smallest_circle
 from pluto_bt.skills.outline import Array, Planar
@@ -62,7 +62,7 @@ def circle(robot: Planar, thing: Thing, radius_m: float, speed_mps: float, side:
     dx, dy = robot[0] - thing.x_m, robot[1] - thing.y_m
     distance_m = max(math.hypot(dx, dy), 0.1)
     inward_rad = max(-MOST_INWARD_RAD, min(MOST_INWARD_RAD, INWARD_RAD_PER_M * (distance_m - radius_m)))
-    error_rad = wrap(math.atan2(dy, dx) + side * (math.pi / 2.0 + inward_rad) - robot[2])
+    error_rad = wrap_angle(math.atan2(dy, dx) + side * (math.pi / 2.0 + inward_rad) - robot[2])
     forward_mps = speed_mps * max(0.0, 1.0 - abs(error_rad) / SLOW_RAD)
     return forward_mps, side * forward_mps / distance_m + TURN_PER_S * error_rad
 
@@ -78,7 +78,7 @@ class Round:
         """Turns around the object that have been seen, counted without gaps and without doubles."""
         bearing_rad = math.atan2(robot[1] - thing.y_m, robot[0] - thing.x_m)
         if self._last_rad is not None:
-            self._now_rad += wrap(bearing_rad - self._last_rad)
+            self._now_rad += wrap_angle(bearing_rad - self._last_rad)
         self._last_rad = bearing_rad
         self._low_rad, self._high_rad = min(self._low_rad, self._now_rad), max(self._high_rad, self._now_rad)
         return (self._high_rad - self._low_rad) / math.tau

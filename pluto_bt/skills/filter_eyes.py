@@ -66,6 +66,11 @@ class FilterEyes:
         space.stand(robot, 0.0 if self._has_begun else p.assumed_clear_m, now_s, now_s - p.obstacle_memory_s, window_m)
         self._has_begun = True
 
+    def forget(self) -> None:
+        """Nothing and nobody was ever seen."""
+        self.space.forget()
+        self.walkers.forget()
+
     def hears(self, now_s: float) -> bool:
         """Whether the sonar, where there is one, can be trusted."""
         return self._ear is None or self._ear.is_fresh(now_s)

@@ -10,8 +10,8 @@ import numpy as np
 
 from pluto_bt.blackboard.codes import GotoStatus
 from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.avoid_parameters import AvoidParameters
-from pluto_bt.skills.heading import wrap
 from pluto_bt.skills.limits import Limits
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.steering import ROOM_M, Steer, Steering
@@ -75,7 +75,7 @@ class Goto:
             points: (n, 5) obstacles in the robot frame: x, y, margin, velocity.
         """
         dx, dy = self._goal[0] - pose[0], self._goal[1] - pose[1]
-        distance_m, goal_rad = math.hypot(dx, dy), wrap(math.atan2(dy, dx) - pose[2])
+        distance_m, goal_rad = math.hypot(dx, dy), wrap_angle(math.atan2(dy, dx) - pose[2])
         self._note(now_s, distance_m, odometry)
         if self._is_there(distance_m, goal_rad, now_s):
             self.status = GotoStatus.REACHED
@@ -100,7 +100,7 @@ class Goto:
         if distance_m < self._best_m - PROGRESS_M:
             self._best_m, self._best_rad, self._progress_s = distance_m, math.inf, now_s
         stood = self._stood
-        if stood is None or math.dist(stood[:2], odometry[:2]) > MOVED_M or abs(wrap(odometry[2] - stood[2])) > MOVED_RAD:
+        if stood is None or math.dist(stood[:2], odometry[:2]) > MOVED_M or abs(wrap_angle(odometry[2] - stood[2])) > MOVED_RAD:
             self._stood, self._moved_s = odometry, now_s
 
     def _is_there(self, distance_m: float, goal_rad: float, now_s: float) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.limits import Limits, Twist, clamp
 
 GAIN_PER_S = 2.0  # turn rate for each radian of error: settles in about 1.5 s without overshoot behind a 0.1 s lag
@@ -14,11 +15,6 @@ LOOK_AHEAD_M = 1.0  # a sideways offset is steered out over about this distance
 MAX_BACK_RAD = math.radians(15.0)  # the steepest way back onto the line
 ON_COURSE_RAD = math.radians(2.0)  # the turn has ended
 NEW_LINE_RAD = math.radians(2.0)  # a target that moves more than this begins a new line
-
-
-def wrap(angle_rad: float) -> float:
-    """The same angle within [-pi, pi]."""
-    return math.remainder(angle_rad, math.tau)
 
 
 def regulate(error_rad: float, speed_mps: float, limits: Limits, max_turn_rate_radps: float = 0.0) -> Twist:
@@ -53,9 +49,9 @@ class Line:
             target_rad, heading_rad: in the same frame.
             distance_m: the odometer; it counts down when the robot backs.
         """
-        error_rad = wrap(target_rad - heading_rad)
+        error_rad = wrap_angle(target_rad - heading_rad)
         driven_m, self._distance_m = distance_m - self._distance_m, distance_m
-        is_new = self._target_rad is None or abs(wrap(target_rad - self._target_rad)) > NEW_LINE_RAD
+        is_new = self._target_rad is None or abs(wrap_angle(target_rad - self._target_rad)) > NEW_LINE_RAD
         self._target_rad = target_rad
         if is_new or abs(error_rad) > SLOW_ANGLE_RAD / 2.0:
             self.offset_m, self._is_on_course = 0.0, False

@@ -13,14 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
-from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, clearances, mark_ground, mark_level
+from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, along_line, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 
 Indices = NDArray[np.intp]
 CELLS = 640  # of one side
+CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
 NEVER_S = -1.0
+HERE_M = 1.0  # so near to where the robot has been nothing needs a visit, though its laser has not looked there
 
 
 class Cell(NamedTuple):
@@ -35,9 +37,11 @@ class LocalMap:
 
     def __init__(self, parameters: MotionParameters) -> None:
         self.parameters = parameters
-        self.cell_m = parameters.path_half_width_m / 6.0
+        self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
         self.far_cells = parameters.wide_half_width_m / self.cell_m
+        n = math.ceil(HERE_M / self.cell_m)
+        self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
         self.forget((0.0, 0.0, 0.0))
 
     def forget(self, middle: Planar) -> None:
@@ -84,8 +88,17 @@ class LocalMap:
 
     def clearances_m(self, points: Array) -> Array:
         """`clearance_m` of points (n, 2)."""
-        free: Array = self.clearance[self.cells(points)].astype(np.float64)
-        return free * self.cell_m
+        return under_points(self.clearance, points, self.cell_m, self.i0, self.j0) * self.cell_m
+
+    def clearances_between_m(self, a: tuple[float, float], b: tuple[float, float]) -> Array:
+        """`clearance_m` at each cell of the straight line from a to b."""
+        count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.cell_m) + 1)
+        return along_line(self.clearance, *self.place(*a), *self.place(*b), count) * self.cell_m
+
+    def standing(self) -> Array:
+        """The middles (n, 2) in metres of all cells where something stands, as of the last `refresh`."""
+        i, j = np.nonzero(self.clearance < 0.5)
+        return np.column_stack((i + self.i0 + 0.5, j + self.j0 + 0.5)) * self.cell_m
 
     # ------------------------------------------------------------------ seeing
 
@@ -112,23 +125,53 @@ class LocalMap:
                         self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
             self._changed(x, y, reach_m)
 
+    def visit(self, x_m: float, y_m: float) -> None:
+        """The robot is here."""
+        i, j = self.cell(x_m, y_m)
+        n = self._here.shape[0] // 2
+        if n <= i < CELLS - n and n <= j < CELLS - n:
+            self.covered[i - n : i + n + 1, j - n : j + n + 1] |= self._here
+
     def warm(self) -> None:
         """Take a level scan and one that looks down, and forget both."""
         scan = LaserScan(0.0, -0.1, 0.1, read_only((1.0, 1.0, 1.0)), 3)
         for tilt_rad in (0.0, 0.2):
             self.add(scan, (0.0, 0.0, 0.0), 0.5, tilt_rad)
         self.refresh(0.0)
+        self.clearances_m(np.zeros((1, 2)))
+        self.clearances_between_m((0.0, 0.0), (1.0, 0.0))
         self.forget((0.0, 0.0, 0.0))
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
+        self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
+        self._changed(*self.place(x_m, y_m), radius_m)
+
+    def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
+        """What is here cannot be explored any better: it counts as covered."""
+        self.covered[self._disc(x_m, y_m, radius_m)] = 1
+
+    def _disc(self, x_m: float, y_m: float, radius_m: float) -> tuple[Indices, Indices]:
+        """The cells around a point."""
         reach = math.ceil(radius_m / self.cell_m)
         i, j = self.cell(x_m, y_m)
-        for a in range(max(0, i - reach), min(CELLS, i + reach + 1)):
-            for b in range(max(0, j - reach), min(CELLS, j + reach + 1)):
-                if math.hypot(a - i, b - j) <= reach:
-                    self.low_s[a, b] = now_s
-        self._changed(float(i), float(j), radius_m)
+        a, b = np.mgrid[max(0, i - reach) : min(CELLS, i + reach + 1), max(0, j - reach) : min(CELLS, j + reach + 1)]
+        near = np.hypot(a - i, b - j) <= reach
+        return a[near], b[near]
+
+    def erase(self, middle: tuple[float, float], side_m: float, *, inside: bool) -> None:
+        """Forget what was seen in a square round a point, or outside of it."""
+        (i, j), half = self.place(*middle), 0.5 * side_m / self.cell_m
+        low_i, low_j = (max(0, math.floor(at - half)) for at in (i, j))
+        square = np.s_[low_i : max(0, math.ceil(i + half)), low_j : max(0, math.ceil(j + half))]
+        for grid, blank in ((self.evidence, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S)):
+            kept = grid[square].copy()
+            if inside:
+                grid[square] = blank
+            else:
+                grid[:] = blank
+                grid[square] = kept
+        self._changed(i, j, side_m if inside else CELLS * self.cell_m)
 
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""

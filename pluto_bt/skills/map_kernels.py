@@ -123,7 +123,6 @@ def clearances(
 
     Two sweeps carry the distance from cell to cell, 1 across and √2 diagonally; at most 8 % more than the straight one.
     """
-    size = evidence.shape[0]
     rows, columns = i1 - i0, j1 - j0
     near = np.full((rows + 2, columns + 2), np.float32(most))
     diagonal = np.float32(1.4142)
@@ -141,6 +140,31 @@ def clearances(
         for b in range(columns, 0, -1):
             value = min(near[a, b], min(near[a + 1, b] + one, min(near[a, b + 1] + one, min(near[a + 1, b + 1], near[a + 1, b - 1]) + diagonal)))
             near[a, b] = value
-            inside = (a > keep or i0 == 0) and (a <= rows - keep or i1 == size) and (b > keep or j0 == 0) and (b <= columns - keep or j1 == size)
-            if inside:
-                out[i0 + a - 1, j0 + b - 1] = value
+    first_i, last_i = 0 if i0 == 0 else keep, rows if i1 == evidence.shape[0] else rows - keep
+    first_j, last_j = 0 if j0 == 0 else keep, columns if j1 == evidence.shape[1] else columns - keep
+    for a in range(first_i, last_i):
+        for b in range(first_j, last_j):
+            out[i0 + a, j0 + b] = near[a + 1, b + 1]
+
+
+@kernel
+def along_line(grid: Floats, i: float, j: float, to_i: float, to_j: float, count: int) -> Array:
+    """The cells under `count` points evenly on the line from (i, j) to (to_i, to_j), ends included; beyond the edge the nearest cell."""
+    most = grid.shape[0] - 1
+    out = np.empty(count)
+    for k in range(count):
+        share = k / (count - 1)
+        at_i, at_j = math.floor(i + share * (to_i - i)), math.floor(j + share * (to_j - j))
+        out[k] = grid[min(max(at_i, 0), most), min(max(at_j, 0), most)]
+    return out
+
+
+@kernel
+def under_points(grid: Floats, points: Array, cell_m: float, i0: int, j0: int) -> Array:
+    """The cells under points (n, 2) in metres, of a grid whose first cell is (i0, j0); beyond the edge the nearest cell."""
+    most = grid.shape[0] - 1
+    out = np.empty(points.shape[0])
+    for k in range(points.shape[0]):
+        at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
+        out[k] = grid[min(max(at_i, 0), most), min(max(at_j, 0), most)]
+    return out

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import msgspec
 
-from pluto_bt.blackboard.codes import Avoidance, GotoStatus, LinkStatus, MotionCommand, MotionStatus, MovetoStatus, split_flags
+from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, MotionCommand, MotionStatus, MovetoStatus, split_flags
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, JobState
 from pluto_bt.skills import reasons
 from pluto_bt.skills.drive import is_finite
@@ -53,6 +53,7 @@ class Motion:
         """Take a command; the one to pass down to avoidance, or None where there is none to pass. `pose` is interface 3, None if unknown.
 
         What goes down is stamped anew, so that every order of motion is a new one for the links below, whatever stamp its sender wrote.
+        46 only sets: a simple command in force is not touched, and a job at work goes on inside the new rectangle, or fails if it cannot.
         """
         if command.flags == MotionCommand.RESUME and self.job is not None and is_finite(command):
             self.command = command  # it goes on already
@@ -66,7 +67,9 @@ class Motion:
             return msgspec.structs.replace(command, stamp_s=now_s)
         if command.flags == MotionCommand.SET_RECTANGLE:
             refused = self._set_rectangle(command.velocity, (*command.position, command.force[0] if command.force else 0.0))
-            return self._refuse(now_s, refused) if refused else ActuatorState(now_s) if was_at_work else None
+            if refused:
+                return self._refuse(now_s, refused)
+            return self._begin_job(msgspec.structs.replace(command, flags=int(MotionCommand.RESUME)), now_s, pose) if was_at_work else None
         if command.flags in (*JOBS, MotionCommand.RESUME):
             return self._begin_job(command, now_s, pose)
         return self._refuse(now_s, f"motion takes cmdFlags 10*A + T with A, T 0 to 3, 42 to 46, or -1; not {command.flags}")
@@ -88,14 +91,19 @@ class Motion:
             self.moveto = MovetoStatus.NONE
             self.verdict = Verdict(reason=state.reason, text=state.text)
 
-    def status(self, now_s: float, avoid: FVectorState | None, avoid_has_it: bool) -> FVectorState:
-        """`motion/status`: data and element[0..1] are avoidance's once it has accepted our last command; a stopped avoidance shows always."""
+    def status(self, now_s: float, avoid: FVectorState | None, sent: ActuatorState | None) -> FVectorState:
+        """`motion/status`: data and element[0..1] are avoidance's; a stopped avoidance shows always.
+
+        Args:
+            sent: what went down and avoidance has not accepted yet, so that its status is still that of an earlier command; else None.
+        """
         data: tuple[float, ...] = (0.0, 0.0)
-        link, goto = 0, 0
+        flags = None if sent is None else split_flags(sent.flags)
+        link, goto = 0, int(GotoStatus.RUNNING if flags is not None and flags[1] is CommandType.GOTO else GotoStatus.NONE)
         reason, text = self.verdict.reason, self.verdict.text
         if avoid is not None:
             data = avoid.data
-            if avoid_has_it or avoid.element[1] == GotoStatus.STOPPED_THREAD:
+            if sent is None or avoid.element[1] == GotoStatus.STOPPED_THREAD:
                 link, goto = avoid.element
                 if not reason:
                     reason, text = avoid.reason, avoid.text
@@ -177,6 +185,8 @@ class Motion:
         if not (0.0 < base_m <= most_m and 0.0 < height_m <= most_m):
             return f"a rectangle needs 0 < b, h <= {most_m:g} m (b = 0 removes it); not b = {base_m:g}, h = {height_m:g}"
         self.rectangle = Rectangle(base_m, height_m, home)
+        if self.kept is not None and self.kept.kind == MotionCommand.EXPLORE:
+            self.kept = self.kept._replace(place=home[:2])
         return ""
 
     def _refuse(self, now_s: float, text: str) -> ActuatorState:

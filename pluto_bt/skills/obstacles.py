@@ -26,6 +26,7 @@ class Obstacles:
 
     def __init__(self, parameters: AvoidParameters) -> None:
         self.parameters = parameters
+        self.reach_m = parameters.reach_m
         self.forget()
 
     def forget(self) -> None:
@@ -46,7 +47,7 @@ class Obstacles:
         """
         p, ranges = self.parameters, scan.ranges_m
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(ranges))
-        near = (ranges > 0.0) & (ranges < p.reach_m + 1.0) & ~self._is_lone(ranges)  # NaN compares False
+        near = (ranges > 0.0) & (ranges < self.reach_m + 1.0) & ~self._is_lone(ranges)  # NaN compares False
         if tilt_rad:
             height_m = z_m - ranges * np.cos(angles) * math.sin(tilt_rad)
             near &= height_m > 0.05  # the rest is the ground
@@ -87,12 +88,12 @@ class Obstacles:
             parts.append(self._echoes)
         if not parts:
             return np.zeros((0, 5))
-        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], now_s, self.parameters.reach_m + beyond_m)
+        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], now_s, self.reach_m + beyond_m)
 
     def _is_lone(self, ranges: Array) -> Mask:
         """Single short beams that the scan before does not confirm: dazzle, rain, a leaf."""
-        lone = np.zeros(len(ranges), dtype=bool)
-        lone[1:-1] = np.minimum(ranges[:-2], ranges[2:]) - ranges[1:-1] > LONE_STEP_M
+        beyond = np.concatenate(([np.inf], ranges, [np.inf]))  # the beams at the edges have one neighbour
+        lone = np.minimum(beyond[:-2], beyond[2:]) - ranges > LONE_STEP_M
         if lone.any() and self._last_ranges_m is not None and len(self._last_ranges_m) == len(ranges):
             before = self._last_ranges_m
             for i in np.flatnonzero(lone).tolist():
@@ -119,7 +120,7 @@ class Obstacles:
         last_rad = scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
         outside = (bearing < scan.angle_min_rad + FIELD_EDGE_RAD) | (bearing > last_rad - FIELD_EDGE_RAD)
         memory_s = np.where(old[:, MARGIN] == p.margin_m, p.memory_s, p.walker_memory_s)  # who walks may be seen before his pace is known
-        self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < p.reach_m + 1.0)]
+        self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < self.reach_m + 1.0)]
 
 
 def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:

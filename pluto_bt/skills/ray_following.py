@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pluto_bt.skills.heading import wrap
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.local_map import LocalMap
-from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.rays import Openings, clearances_between
+from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.rays import Openings
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.ways import Way
 
@@ -67,7 +67,7 @@ class RayFollowing:
             return Advice(BLOCKED, self._point_ahead(robot, 1.0), text="no way made for a while")
         if not self._keep_way(now_s, robot):
             return Advice(LOST, text="there is no way there any more")
-        if math.dist(robot[:2], self._way.points[-1]) < END_M and len(self._way.points) < 2 * END_M / self._map.cell_m + 4:
+        if is_done(self._way, robot, self._map.cell_m):
             return Advice(DONE, text="the end of the path")
         point = self._point_ahead(robot, self._ahead_m)
         heading_rad = math.atan2(point[1] - robot[1], point[0] - robot[0])
@@ -98,25 +98,22 @@ class RayFollowing:
         """Nothing stands on the next stretch."""
         count = int(2.0 * self._ahead_m / self._map.cell_m)
         stretch = self._way.points[4:count]
-        return not len(stretch) or bool((self._clearances(stretch) > 0.8 * self._least_m).all())
-
-    def _clearances(self, points: Array) -> Array:
-        return self._map.clearances_m(points)
+        return not len(stretch) or bool((self._map.clearances_m(stretch) > 0.8 * self._least_m).all())
 
     def _point_ahead(self, robot: Planar, most_m: float) -> tuple[float, float]:
         """The farthest point of the way within `most_m` that can be driven to straight without leaving the room that the way has."""
         points = self._way.points
         last = min(len(points) - 1, math.ceil(most_m / self._map.cell_m))
-        room_m = min(float(self._clearances(points[: last + 1]).min()), self._map.parameters.path_half_width_m)
+        room_m = min(float(self._map.clearances_m(points[: last + 1]).min()), self._map.parameters.path_half_width_m)
         for k in (last, (3 * last) // 4, last // 2, last // 4):
             point = (float(points[k, 0]), float(points[k, 1]))
-            if float(clearances_between(self._map, robot[:2], point).min()) >= 0.8 * room_m:
+            if float(self._map.clearances_between_m(robot[:2], point).min()) >= 0.8 * room_m:
                 break
         return point
 
     def _must_turn(self, robot: Planar, heading_rad: float, speed_mps: float, rectangle: Rectangle | None) -> bool:
         """True while the robot has to turn on the spot: the way leads far aside, or it would drive out of the rectangle."""
-        off_rad = abs(wrap(heading_rad - robot[2]))
+        off_rad = abs(wrap_angle(heading_rad - robot[2]))
         x, y = robot[0] + AHEAD_S * speed_mps * math.cos(robot[2]), robot[1] + AHEAD_S * speed_mps * math.sin(robot[2])
         leaves = rectangle is not None and rectangle.depth_m(x, y) < min(0.0, rectangle.depth_m(robot[0], robot[1]))
         self._is_turning = off_rad > (TURNED_RAD if self._is_turning else TURN_RAD) or (leaves and off_rad > TURNED_RAD)
@@ -124,7 +121,7 @@ class RayFollowing:
 
     def _can_turn(self, now_s: float, robot: Planar) -> bool:
         """False for a while where turning makes no headway: something stands too near."""
-        if abs(wrap(robot[2] - self._turn_mark_rad)) > TURNING_RAD or now_s - self._turn_mark_s > 2.0 * TURNING_S:
+        if abs(wrap_angle(robot[2] - self._turn_mark_rad)) > TURNING_RAD or now_s - self._turn_mark_s > 2.0 * TURNING_S:
             self._turn_mark_rad, self._turn_mark_s = robot[2], now_s
         elif now_s - self._turn_mark_s > TURNING_S:
             self._may_turn_s = now_s + NO_TURN_S
@@ -136,3 +133,8 @@ class RayFollowing:
         if not self._way.leads_there:
             return False
         return bool((self._map.evidence[self._map.cells(self._way.points)] < 0).all())
+
+
+def is_done(way: Way, robot: Planar, cell_m: float) -> bool:
+    """True if the robot is at the end of a way, and not only passes it on the other side of a wall."""
+    return math.dist(robot[:2], way.points[-1]) < END_M and len(way.points) < 2 * END_M / cell_m + 4

@@ -8,7 +8,7 @@ from collections import deque
 import numpy as np
 
 from pluto_bt.skills.local_map import LocalMap
-from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.outline import Planar
 
 OPENING_LOOK_M = 15.0  # how deep sides are looked into
 BEFORE = 12  # how many earlier looks at a side say how deep it usually is
@@ -16,22 +16,16 @@ APART_SHARE = 0.25  # looks are so far apart, in half widths of a path
 SAME_OPENING_HALF_WIDTHS = 4.0  # an opening so near to one that was told before is the same
 
 
-def clearances_between(map: LocalMap, a: tuple[float, float], b: tuple[float, float]) -> Array:
-    """Clearance in metres at each cell of the straight line from a to b (metres, dead reckoning)."""
-    count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / map.cell_m) + 1)
-    return map.clearances_m(np.linspace(a, b, count))
-
-
 def is_open(map: LocalMap, a: tuple[float, float], b: tuple[float, float], half_width_m: float, from_m: float = 0.0) -> bool:
     """True if a corridor of this half width from a to b holds nothing that stands; its first `from_m` metres may be narrower."""
-    free = clearances_between(map, a, b)[math.ceil(from_m / map.cell_m) :]
+    free = map.clearances_between_m(a, b)[math.ceil(from_m / map.cell_m) :]
     return bool((free >= half_width_m).all())
 
 
 def free_m(map: LocalMap, x_m: float, y_m: float, heading_rad: float, half_width_m: float, most_m: float) -> float:
     """How far a corridor of this half width is open from a point on a heading."""
     end = (x_m + most_m * math.cos(heading_rad), y_m + most_m * math.sin(heading_rad))
-    free = clearances_between(map, (x_m, y_m), end)
+    free = map.clearances_between_m((x_m, y_m), end)
     blocked = np.flatnonzero(free < half_width_m)
     return most_m if not len(blocked) else float(blocked[0]) * map.cell_m
 

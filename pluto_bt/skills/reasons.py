@@ -10,8 +10,10 @@ EXECUTIVE_SILENT = "executive-silent"
 LASER = "laser"
 LASER_FATAL = "laser-fatal"
 LASER_STALE = "laser-stale"
+LOST = "lost"
 NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
+NO_WALL = "no-wall"
 NOTHING_TO_RESUME = "nothing-to-resume"
 ODOMETRY_FROZEN = "odometry-frozen"
 ODOMETRY_STALE = "odometry-stale"
@@ -23,6 +25,7 @@ SONAR_STALE = "sonar-stale"
 STOPPED = "stopped"
 STUCK = "stuck"
 UNSEEN = "unseen"
+WALL_LOST = "wall-lost"
 WALKER = "walker"
 
 CHAIN_REASONS: dict[str, str] = {
@@ -34,8 +37,10 @@ CHAIN_REASONS: dict[str, str] = {
     LASER: "the laser sees an obstacle in the way; slower or stopped until it is clear",
     LASER_FATAL: "the laser has had a fatal error and is rebooting (about 20 s)",
     LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
+    LOST: "the laser sees another place than wheels and gyro tell of: nobody knows where the robot is; post a pose",
     NO_DEVICE: "the job needs a device that the platform does not have",
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
+    NO_WALL: "wall follow sees no wall within reach, or none with room beside it",
     NOTHING_TO_RESUME: "45: nothing was stopped, and no rectangle is set",
     OUTSIDE_RECTANGLE: "the goal or the start is outside the rectangle",
     ODOMETRY_FROZEN: "the wheels are told to turn and the encoders stand still: blocked wheels or dead encoders",
@@ -45,7 +50,8 @@ CHAIN_REASONS: dict[str, str] = {
     SONAR: "a sonar hears an obstacle in the way; slower or stopped until it is clear",
     SONAR_STALE: "the sonar is asked for and delivers nothing that can be trusted",
     STOPPED: "stop was commanded, or the link's thread is stopped",
-    STUCK: "goto makes no progress towards the goal",
+    STUCK: "goto makes no progress towards the goal, or wall follow none along the wall",
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
+    WALL_LOST: "the wall that was followed is not there any more",
     WALKER: "somebody walks near the way, or may do so out of view; the robot creeps there, or waits",
 }

@@ -50,6 +50,13 @@ class SeenSpace:
         """The lower left corner in the frame of dead reckoning."""
         return self._corner[0] * CELL_M, self._corner[1] * CELL_M
 
+    def forget(self) -> None:
+        """Nothing was ever seen: the robot stands in another place."""
+        for cells in (self.seen, self._heard, self.stamps, self.spots):
+            cells.fill(NEVER)
+        self._last_ranges_m = None
+        self.drop_echoes()
+
     def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, people: Array) -> bool:
         """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free.
 
@@ -74,6 +81,7 @@ class SeenSpace:
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
         ahead = scan.ranges_m * np.cos(angles)
         usable = (scan.ranges_m > 0.0) & (scan.ranges_m < self._reach_m) & (z_m - ahead * math.sin(tilt_rad) > GROUND_M)
+        usable &= self._believed(scan.ranges_m) > 0.0  # no level scan could take a dazzled beam back
         c, s = math.cos(laser[2]), math.sin(laser[2])
         x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * np.sin(angles))[usable]
         points = np.column_stack((laser[0] + c * x - s * y, laser[1] + s * x + c * y))

@@ -51,6 +51,16 @@ class Sight:
         self._sonar: SonarState | None = None
         self._sonar_is_good = False
 
+    @property
+    def scan_s(self) -> float:
+        """The stamp of the newest scan; before the first one, or without a laser, that of the newest echoes."""
+        newest = self._scan if self._scan is not None else self._sonar
+        return -math.inf if newest is None else newest.stamp_s
+
+    def widen(self, reach_m: float) -> None:
+        """Look at obstacles up to `reach_m`, or up to the parameter where that is more; what is already remembered stays."""
+        self._obstacles.reach_m = max(reach_m, self.parameters.reach_m)
+
     def look(self, view: ScanView | None, sonar: SonarState | None, robot: Planar, with_laser: bool, now_s: float) -> None:
         """Take what is new.
 

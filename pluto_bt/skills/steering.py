@@ -13,8 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.kernel import kernel
-from pluto_bt.skills.heading import wrap
 from pluto_bt.skills.outline import Array, Outline
 
 HEADINGS = 72
@@ -71,7 +71,7 @@ class Steer:
         enough_m = min(ENOUGH_M, max(goal_m, 0.1))
         sum_rad = goal_rad + bend(points, goal_rad, o.side_m, force)
         change = self._last_rad is not None
-        last_rad = wrap(self._last_rad - heading_rad) if self._last_rad is not None else 0.0
+        last_rad = wrap_angle(self._last_rad - heading_rad) if self._last_rad is not None else 0.0
         best = weigh(headings, ways, sum_rad, goal_rad, last_rad, change, self._side, enough_m, turnable_rad[0], turnable_rad[1])
         chosen_rad, free_m, room_m = float(headings[best]), float(ways[best, 0]), float(ways[best, 1])
         goal_is_free = bool(ways[-1, 0] >= enough_m)
@@ -80,7 +80,7 @@ class Steer:
 
     def _remember(self, chosen_rad: float, goal_rad: float, heading_rad: float, goal_is_free: bool) -> None:
         self._last_rad = chosen_rad + heading_rad
-        detour_rad = wrap(chosen_rad - goal_rad)
+        detour_rad = wrap_angle(chosen_rad - goal_rad)
         if goal_is_free:
             self._side = 0.0
         elif abs(detour_rad) > SIDE_TAKEN_RAD:  # also when the side taken proves the longer one: then the other counts as taken

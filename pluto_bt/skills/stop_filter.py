@@ -80,6 +80,11 @@ class StopFilter:
         speed_mps = self.limits.speed_mps if senses.raw is None else max(abs(senses.raw.velocity[0]), abs(self.out[0]))
         self.eyes.look(now_s, senses, senses.pose[1], self._window_m(min(speed_mps + 0.1, self.limits.speed_mps)))
 
+    def forget(self) -> None:
+        """The robot stands in another place: nothing that was seen is there."""
+        if self.eyes is not None:
+            self.eyes.forget()
+
     def _stop_m(self, speed_mps: float) -> float:
         """The way from a decision to standstill."""
         return abs(speed_mps) * self._hold_s + speed_mps * speed_mps / (2.0 * BRAKING_SHARE * self.limits.deceleration_mps2)

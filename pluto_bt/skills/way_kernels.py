@@ -1,4 +1,4 @@
-"""The search for a way over the local map: cheapest first, in cells. Places are flat indices `i * n + j`."""
+"""The search for a way over a grid: cheapest first, in cells. Places are flat indices `i * columns + j`."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ Array = NDArray[np.float64]
 HOME_X, HOME_Y, COS, SIN, BASE, HEIGHT, EDGE = range(7)  # of the rectangle, in cells; BASE <= 0 = there is none
 NARROW, MIDDLE, UNKNOWN = 3.0, 1.0, 0.3  # what a step costs more: where it is narrower than a path, beside the middle of the street, unseen
 TIGHT = 6.0  # where the robot stands nearer to something than the narrowest way allows
-GREED = 1.5  # the rest of the way counts more than it must: far fewer cells are looked at, and the way is hardly longer
 SIDE = 2  # a place is worth going to if much of the block of (2 * SIDE + 1)² cells around it is not covered
 WORTH = 0.4
 
@@ -85,7 +84,7 @@ def is_worth(i: int, j: int, covered: Bytes, evidence: Bytes, rectangle: Array) 
 @kernel
 def search(
     evidence: Bytes, covered: Bytes, clearance: Floats, start: tuple[int, int], goal: tuple[int, int], goal_reach: float, rectangle: Array,
-    least: float, half: float, wide: float, relaxed: float, room: float, cost: Floats, came: Counts, keys: Floats, places: Counts,
+    least: float, half: float, wide: float, relaxed: float, room: float, greed: float, cost: Floats, came: Counts, keys: Floats, places: Counts,
 ) -> int:  # fmt: skip
     """The cheapest way from `start` to within `goal_reach` of `goal`, or (goal_reach < 0) to the nearest place worth covering.
 
@@ -93,21 +92,22 @@ def search(
         least: clearance without which nothing passes, except within `relaxed` of start and goal.
         room: clearance that a place worth covering must have, so that the robot can turn there.
         half: clearance of an open path; narrower costs more. wide: clearance from which on more is not better.
+        greed: so many times the rest of the way counts; above 1 far fewer cells are looked at, and the way is hardly longer.
         cost, came, keys, places: working memory; `came` holds the way back, place by place.
     Returns: the place where the way ends, or -1.
     """
-    size = evidence.shape[0]
-    for i in range(size):
-        for j in range(size):
-            cost[i * size + j] = np.inf
-    begin = start[0] * size + start[1]
+    rows, columns = evidence.shape
+    for i in range(rows):
+        for j in range(columns):
+            cost[i * columns + j] = np.inf
+    begin = start[0] * columns + start[1]
     cost[begin], came[begin] = 0.0, begin
     count = push(keys, places, 0, 0.0, begin)
     while count > 0:
         count = pop(keys, places, count)
         at = int(places[count])
-        i, j = at // size, at % size
-        rest = GREED * max(0.0, math.hypot(goal[0] - i, goal[1] - j) - goal_reach) if goal_reach >= 0.0 else 0.0
+        i, j = at // columns, at % columns
+        rest = greed * max(0.0, math.hypot(goal[0] - i, goal[1] - j) - goal_reach) if goal_reach >= 0.0 else 0.0
         if keys[count] > cost[at] + rest + 0.01:
             continue  # a cheaper way here was found later
         if goal_reach >= 0.0:
@@ -118,23 +118,22 @@ def search(
         for di in range(-1, 2):
             for dj in range(-1, 2):
                 a, b = i + di, j + dj
-                if (di == 0 and dj == 0) or not (0 <= a < size and 0 <= b < size) or evidence[a, b] > 0:
+                if (di == 0 and dj == 0) or not (0 <= a < rows and 0 <= b < columns) or evidence[a, b] > 0:
                     continue
                 free = clearance[a, b]
-                from_end = min(math.hypot(a - start[0], b - start[1]), math.hypot(a - goal[0], b - goal[1]) if goal_reach >= 0.0 else 1e9)
-                if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (rectangle[EDGE] if from_end > relaxed else -0.5):
-                    continue
+                if free < least or rectangle[BASE] > 0.0:
+                    from_end = min(math.hypot(a - start[0], b - start[1]), math.hypot(a - goal[0], b - goal[1]) if goal_reach >= 0.0 else 1e9)
+                    if free < least and (from_end > relaxed or free < 1.0):
+                        continue
+                    if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (rectangle[EDGE] if from_end > relaxed else -0.5):
+                        continue
                 factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
                 if free < half:
-                    factor += NARROW * (half - max(free, least)) / (half - least)
-                if free < least:
-                    if from_end > relaxed or free < 1.0:
-                        continue
-                    factor += TIGHT
+                    factor += NARROW * (half - max(free, least)) / (half - least) + (TIGHT if free < least else 0.0)
                 new = cost[at] + factor * (1.0 if di == 0 or dj == 0 else 1.41421356)
-                to = a * size + b
+                to = a * columns + b
                 if new < cost[to] - 1e-4:
                     cost[to], came[to] = new, at
-                    ahead = GREED * max(0.0, math.hypot(goal[0] - a, goal[1] - b) - goal_reach) if goal_reach >= 0.0 else 0.0
+                    ahead = greed * max(0.0, math.hypot(goal[0] - a, goal[1] - b) - goal_reach) if goal_reach >= 0.0 else 0.0
                     count = push(keys, places, count, new + ahead, to)
     return -1

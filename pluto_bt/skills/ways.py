@@ -14,6 +14,7 @@ from pluto_bt.skills.way_kernels import search
 
 TURNING_GAP_M = 0.15  # what must be left around a robot that turns on the spot
 RELAXED_M = 1.2  # so near to its start and its goal a way may be tighter and nearer to the edge of the rectangle
+GREED = 1.5  # the search hurries towards the goal, for it is asked often
 BEYOND_M = 3.0  # a goal beyond the map is reached for now if the edge of the map is reached so near to it
 
 
@@ -74,7 +75,7 @@ class Ways:
         wide, relaxed = max(map.far_cells, half), RELAXED_M / map.cell_m
         end = search(
             map.evidence, map.covered, map.clearance, map.cell(robot[0], robot[1]), map.cell(*goal), reach_cells, self._in_cells(rectangle),
-            least, half, wide, relaxed, self.room_m / map.cell_m, self._cost, self._came, self._keys, self._places,
+            least, half, wide, relaxed, self.room_m / map.cell_m, GREED, self._cost, self._came, self._keys, self._places,
         )  # fmt: skip
         return None if end < 0 else self._traced(end)
 

@@ -15,9 +15,9 @@ from pluto_bt.source.faults import Faults, Place
 from pluto_bt.source.text import MAX_BYTES, SourceText, read_text
 from pluto_bt.source.xml_entities import ENTITY, character, decoded
 from pluto_bt.source.xml_faults import NAME, XmlReport, XmlSyntaxError
-from pluto_bt.source.xml_tree import XmlAttribute, XmlComment, XmlElement
+from pluto_bt.source.xml_tree import OpenElement, XmlAttribute, XmlComment, XmlDocument, XmlElement
 
-__all__ = ["MAX_DEPTH", "MAX_ELEMENTS", "XmlAttribute", "XmlComment", "XmlElement", "read_xml", "read_xml_file"]
+__all__ = ["MAX_DEPTH", "MAX_ELEMENTS", "XmlAttribute", "XmlComment", "XmlDocument", "XmlElement", "read_document", "read_xml", "read_xml_file"]
 
 MAX_DEPTH = 256
 MAX_ELEMENTS = 50_000
@@ -26,13 +26,22 @@ DUPLICATE_COST = 100  # an attribute that is repeated for ever soon ends the rea
 _TAG = re.compile(NAME)
 _ATTRIBUTE = re.compile(rf"""\s*+(?:({NAME})\s*+=\s*+("[^"]*+"|'[^']*+')|/?>)""")
 _END_TAG = re.compile(rf"</\s*+({NAME})\s*+>")
+_DECLARATION = re.compile(r"<\?xml\s")
 _WORD = re.compile(r"<!\w{0,20}")
 
 
 def read_xml(
     text: str, file: str, faults: Faults, *, max_depth: int = MAX_DEPTH, max_elements: int = MAX_ELEMENTS, max_bytes: int = MAX_BYTES
 ) -> XmlElement | None:
-    """The root element of `text`, or None and the fault that ended the reading.
+    """The root element of `text`, or None and the fault that ended the reading; the arguments are those of `read_document`."""
+    document = read_document(text, file, faults, max_depth=max_depth, max_elements=max_elements, max_bytes=max_bytes)
+    return document.root if document is not None else None
+
+
+def read_document(
+    text: str, file: str, faults: Faults, *, max_depth: int = MAX_DEPTH, max_elements: int = MAX_ELEMENTS, max_bytes: int = MAX_BYTES
+) -> XmlDocument | None:
+    """The root element of `text` and what stands around it, or None and the fault that ended the reading.
 
     Args:
         file: the name to show in faults.
@@ -63,24 +72,6 @@ def read_xml_file(
     return read_xml(text, shown_name, faults, max_depth=max_depth, max_elements=max_elements, max_bytes=max_bytes)
 
 
-class _Open:
-    """An element whose end tag is not read yet, with the text and the comments found in it so far."""
-
-    __slots__ = ("comments", "element", "length", "pieces", "runs")
-
-    def __init__(self, element: XmlElement) -> None:
-        self.element = element
-        self.pieces: list[str] = []
-        self.runs: list[tuple[int, int]] = []
-        self.comments: list[XmlComment] = []
-        self.length = 0
-
-    def close(self) -> None:
-        """The element is complete."""
-        self.element.text = "".join(self.pieces)
-        self.element.text_runs, self.element.comments = self.runs, self.comments
-
-
 class _Scanner:
     """One reading, from left to right; `_open` are the elements around the point that is reached."""
 
@@ -89,10 +80,11 @@ class _Scanner:
         self._max_depth, self._max_elements = max_depth, max_elements
         self._elements_left, self._items_left = max_elements, ITEMS_PER_ELEMENT * max_elements
         self._root: XmlElement | None = None
-        self._open: list[_Open] = []
+        self._open: list[OpenElement] = []
+        self._outside: list[XmlComment] = []
 
-    def read(self) -> XmlElement:
-        """The root element, or an `XmlSyntaxError` whose fault is noted."""
+    def read(self) -> XmlDocument:
+        """The document, or an `XmlSyntaxError` whose fault is noted."""
         nul = self._text.find("\0")
         if nul >= 0:
             raise self._report.stop(nul, "xml-syntax", "this is not a text file", expected="XML text", found="a NUL character")
@@ -103,7 +95,7 @@ class _Scanner:
             if bracket > at:
                 self._character_data(at, bracket)
             at = self._markup(bracket) if bracket < end else end
-        return self._finished()
+        return XmlDocument(self._finished(), self._outside, _DECLARATION.match(self._text) is not None)
 
     def _finished(self) -> XmlElement:
         if self._open:
@@ -121,7 +113,10 @@ class _Scanner:
         if following == "/":
             return self._end_tag(at)
         if following == "?":
-            return self._after("?>", at, "a processing instruction", skip=2)
+            after = self._after("?>", at, "a processing instruction", skip=2)
+            if _DECLARATION.match(self._text, at) is None:
+                self._keep(XmlComment(self._text[at + 2 : after - 2], 0, self._source, at, is_instruction=True))
+            return after
         if following == "!":
             return self._declaration(at)
         return self._start_tag(at)
@@ -129,9 +124,7 @@ class _Scanner:
     def _declaration(self, at: int) -> int:
         if self._text.startswith("<!--", at):
             after = self._after("-->", at, "a comment", skip=4)
-            if self._open:
-                parent = self._open[-1]
-                parent.comments.append(XmlComment(self._text[at + 4 : after - 3], len(parent.element.children), self._source, at))
+            self._keep(XmlComment(self._text[at + 4 : after - 3], 0, self._source, at))
             return after
         if self._text.startswith("<![CDATA[", at):
             after = self._after("]]>", at, "a CDATA section", skip=9)
@@ -140,6 +133,13 @@ class _Scanner:
         word = _WORD.match(self._text, at)
         what = "document types and entity declarations are refused"
         raise self._report.stop(at, "doctype", what, expected="elements only", found=word.group() if word else "<!", mend="delete the declaration")
+
+    def _keep(self, comment: XmlComment) -> None:
+        if self._open:
+            comment.child_index = len(self._open[-1].element.children)
+            self._open[-1].comments.append(comment)
+        else:
+            self._outside.append(comment)
 
     def _after(self, closing: str, at: int, what: str, skip: int) -> int:
         """The offset after `closing`, looked for from `skip` characters behind `at`."""
@@ -158,7 +158,7 @@ class _Scanner:
         self._admit(element)
         after = self._attributes(element, name.end())
         if self._text[after - 2] != "/":
-            self._open.append(_Open(element))
+            self._open.append(OpenElement(element))
         return after
 
     def _admit(self, element: XmlElement) -> None:

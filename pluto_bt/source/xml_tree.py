@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from pluto_bt.source.faults import Place
 from pluto_bt.source.text import SourceText
+from pluto_bt.source.xml_entities import ENTITY, character
 
 
 @dataclass(slots=True)
@@ -31,19 +32,28 @@ class XmlAttribute:
         return self.source.place(self.value_start)
 
     def place_at(self, index: int) -> Place:
-        """The place of `value[index]`; the first character of the value if entities were decoded in it."""
-        exact = self.source.text.startswith(self.value, self.value_start)
-        return self.source.place(self.value_start + (index if exact else 0))
+        """The place of `value[index]`: entities before it are longer in the source than in the value."""
+        text, at = self.source.text, self.value_start
+        if text.startswith(self.value, at):
+            return self.source.place(at + index)
+        left = index
+        for entity in ENTITY.finditer(text, at):
+            plain, decoded = entity.start() - at, len(character(entity))
+            if left < plain + decoded:
+                return self.source.place(at + min(left, plain))
+            left, at = left - plain - decoded, entity.end()
+        return self.source.place(at + left)
 
 
 @dataclass(slots=True)
 class XmlComment:
-    """A comment; `child_index` children of its parent stand before it."""
+    """A comment; `child_index` children of its parent stand before it. `is_instruction`: a processing instruction, kept like a comment."""
 
     text: str
     child_index: int
     source: SourceText = field(repr=False, compare=False)
     start: int = field(repr=False, compare=False)
+    is_instruction: bool = False
 
     @property
     def place(self) -> Place:
@@ -91,3 +101,30 @@ class XmlElement:
             return self.place
         at, offset = self.text_runs[run]
         return self.source.place(offset + index - at)
+
+
+@dataclass(slots=True)
+class XmlDocument:
+    """A whole file: its root and the comments around it, each in its place. `is_declared`: it begins with an XML declaration."""
+
+    root: XmlElement
+    outside: Sequence[XmlComment] = ()
+    is_declared: bool = False
+
+
+class OpenElement:
+    """An element whose end tag is not read yet, with the text and the comments found in it so far."""
+
+    __slots__ = ("comments", "element", "length", "pieces", "runs")
+
+    def __init__(self, element: XmlElement) -> None:
+        self.element = element
+        self.pieces: list[str] = []
+        self.runs: list[tuple[int, int]] = []
+        self.comments: list[XmlComment] = []
+        self.length = 0
+
+    def close(self) -> None:
+        """The element is complete."""
+        self.element.text = "".join(self.pieces)
+        self.element.text_runs, self.element.comments = self.runs, self.comments

@@ -5,11 +5,12 @@
     mission.tick_once()
 
 `engine/` ticks, `controls/`, `decorators/` and `leaves/` are the nodes, `script/` the language of conditions, `loader/` reads files,
-`dump/` draws.
+`checks/` looks at the whole, `dump/` draws.
 """
 
+from pluto_bt.trees.checks import check_mission
 from pluto_bt.trees.errors import MissionError, TickError
-from pluto_bt.trees.loader.load import check_mission, load_mission, plan_mission
+from pluto_bt.trees.loader.load import load_mission, plan_mission
 from pluto_bt.trees.mission import Mission
 
 __all__ = ["Mission", "MissionError", "TickError", "check_mission", "load_mission", "plan_mission"]

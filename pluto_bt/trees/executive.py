@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from pluto_bt.trees.errors import TickError
 from pluto_bt.trees.mission import Mission
@@ -29,6 +29,14 @@ class Body(Protocol):
 
     def resumed(self) -> None:
         """A paused mission goes on: motion leaves have to command again."""
+
+
+class Done(NamedTuple):
+    """An order that was carried out: its verb, the run that it made or ended, a word or a text."""
+
+    verb: str
+    run: int = 0
+    text: str = ""
 
 
 class Activity:
@@ -77,11 +85,13 @@ class Executive:
         self._body = body
         self._say = say  # (level, code, text)
         self._orders: deque[tuple[Callable[[], None], dict[str, str]]] = deque()  # what to do; what it makes of the mission's state
+        self._done: list[Done] = []
         self._runs = 0
         self.mission: Activity | None = None
         self.errand: Activity | None = None
         self.job: Activity | None = None
         self._job_body = body
+        self.on_begin: Callable[[Activity], None] = lambda activity: None  # before its first tick, in the thread that steps
         self.ticking: Activity | None = None  # for the watchdog: who is at work
 
     @property
@@ -96,6 +106,19 @@ class Executive:
         for _, turns in tuple(self._orders):
             state = turns.get(state, turns.get("", state))
         return state
+
+    def note(self, verb: str, run: int = 0, text: str = "") -> None:
+        """Remember that an order was carried out, for the black box. Called by the thread that steps."""
+        self._done.append(Done(verb, run, text))
+
+    def take_done(self) -> list[Done]:
+        """What was carried out since the last call."""
+        done, self._done = self._done, []
+        return done
+
+    def order(self, act: Callable[[], None]) -> None:
+        """Let `act` take place at the next step, before the tick. Thread-safe."""
+        self._orders.append((act, {}))
 
     def step(self, now_s: float) -> list[Activity]:
         """One turn: orders, a fresh view, one decision of the mission and one of the job. Gives what was ticked."""
@@ -122,9 +145,9 @@ class Executive:
         if activity.error is not None:
             self._say("error", "leaf-error", activity.text)
 
-    def start(self, mission: Mission) -> None:
-        """Run `mission` from its beginning at the next step; one that runs is ended."""
-        self._orders.append((lambda: self._start(mission), {"": RUNNING}))
+    def start(self, mission: Mission, held: str = "") -> None:
+        """Run `mission` from its beginning at the next step; one that runs is ended. With `held`, a word, it waits for `resume` first."""
+        self._orders.append((lambda: self._start(mission, held), {"": PAUSED if held else RUNNING}))
 
     def start_errand(self, mission: Mission) -> Activity:
         """Run a single node beside a mission that does not run; an errand that goes on is ended."""
@@ -138,6 +161,8 @@ class Executive:
         self.end_job("preempted")
         self._runs += 1
         self.job, self._job_body = Activity(mission, self._runs), body
+        self.note("start-job", self._runs)
+        self.on_begin(self.job)
 
     def end_job(self, reason: str) -> None:
         """Halt the tree of the job; harmless if it is over. Called by the thread that steps."""
@@ -148,7 +173,7 @@ class Executive:
         """End an errand; harmless if it is over."""
         if not errand.is_over:
             self._body.stop()
-            self._orders.append((lambda: errand.end(reason), {}))
+            self._orders.append((lambda: self._end_errand(errand, reason), {}))
 
     def pause(self, reason: str) -> None:
         """Stop the robot now; the mission waits for `resume`, an errand ends. Thread-safe."""
@@ -169,17 +194,28 @@ class Executive:
         self._body.stop()
         self._orders.append((lambda: self._abort(reason), {RUNNING: ABORTED, PAUSED: ABORTED}))
 
-    def _start(self, mission: Mission) -> None:
+    def _start(self, mission: Mission, held: str) -> None:
         self._abort("preempted")
         self._runs += 1
         self.mission = Activity(mission, self._runs)
+        if held:
+            self.mission.state, self.mission.reason = PAUSED, held
+        self.note("start-held" if held else "start", self._runs, held)
+        self.on_begin(self.mission)
 
     def _start_errand(self, errand: Activity) -> None:
         if self.errand is not None:
             self.errand.end("preempted")
         self.errand = errand
+        self.note("start-errand", errand.number)
+        self.on_begin(errand)
+
+    def _end_errand(self, errand: Activity, reason: str) -> None:
+        errand.end(reason)
+        self.note("end-errand", errand.number, reason)
 
     def _pause(self, reason: str) -> None:
+        self.note("pause", text=reason)
         if self.errand is not None:
             self.errand.end(reason)
         if self.mission is not None and self.mission.state == RUNNING:
@@ -187,6 +223,7 @@ class Executive:
             self._say("warning", reason, f"mission paused: {reason}")
 
     def _resume(self) -> None:
+        self.note("resume")
         if self.errand is not None:
             self.errand.end("preempted")
         if self.mission is not None and self.mission.state == PAUSED:
@@ -195,6 +232,7 @@ class Executive:
             self._say("info", "resumed", "mission goes on")
 
     def _abort(self, reason: str) -> None:
+        self.note("abort", text=reason)
         for activity in (self.errand, self.mission):
             if activity is not None:
                 activity.end(reason)

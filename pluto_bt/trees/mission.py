@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import NodeState
@@ -24,6 +24,17 @@ from pluto_bt.trees.tracked import Tracked
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
 
 
+class Origin(NamedTuple):
+    """Where a mission came from: its text, or the file that was read; `files` are the paths of that file and all it includes."""
+
+    text: str = ""
+    file: str = ""
+    files: tuple[str, ...] = ()
+
+
+NOWHERE: Final = Origin()
+
+
 class Mission:
     """One instance of a main tree. Two missions share nothing.
 
@@ -31,10 +42,11 @@ class Mission:
         name: the ID of the main tree.
         root: its first node, a py_trees behaviour.
         blackboard: the root entries, a mapping.
+        origin: where it came from.
     """
 
-    def __init__(self, name: str, root: Any, tracked: list[Tracked], board: Board, context: Context) -> None:
-        self.name, self.root = name, root
+    def __init__(self, name: str, root: Any, tracked: list[Tracked], board: Board, context: Context, origin: Origin = NOWHERE) -> None:
+        self.name, self.root, self.origin = name, root, origin
         self.blackboard = BoardView(board.root)
         self.ticks = 0
         self._tracked, self._context = tracked, context
@@ -202,6 +214,15 @@ class Mission:
 
         return begin
 
+    def watch(self, listen: Callable[[int, str], None]) -> None:
+        """Call `listen` (number of the node depth first, what it told its parent) whenever a leaf ends: SUCCESS, FAILURE or SKIPPED.
+
+        A status alone does not tell it: a parent that ends in the same tick wipes it away.
+        """
+        for number, tracked in enumerate(self._tracked):
+            if not tracked.node.children:
+                tracked.node.step = _watched(number, tracked.node.step, listen)
+
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""
         return list(self._tracked)
@@ -216,6 +237,16 @@ class Mission:
             if tracked.path in seen:
                 tracked.path = f"{tracked.path}::{tracked.plan.uid}"
             seen.add(tracked.path)
+
+
+def _watched(number: int, step: Callable[[], Result], listen: Callable[[int, str], None]) -> Callable[[], Result]:
+    def watched() -> Result:
+        result = step()
+        if result is not RUNNING:
+            listen(number, NAME_OF_STATUS[result])
+        return result
+
+    return watched
 
 
 def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:

@@ -23,6 +23,7 @@ class PortModel:
         default: text, or a value of the kind; None if there is none.
         required: an input that must be given (found at the first tick in BehaviorTree.CPP, by `pluto check` here).
         at_load: a missing one already stops the loading, as in BehaviorTree.CPP.
+        names: what of the world a text names: "area", or "" for nothing.
     """
 
     name: str
@@ -36,6 +37,7 @@ class PortModel:
     ge: float | None = None
     le: float | None = None
     choices: tuple[str, ...] = ()
+    names: str = ""
 
     @property
     def form(self) -> str:
@@ -91,5 +93,6 @@ def models_of_class(leaf: Any) -> dict[str, PortModel]:
                 ge=getattr(declared, "ge", None),
                 le=getattr(declared, "le", None),
                 choices=tuple(getattr(declared, "choices", ())),
+                names=getattr(declared, "names", ""),
             )
     return found

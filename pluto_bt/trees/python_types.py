@@ -121,9 +121,14 @@ def _union(members: list[Kind]) -> Kind:
 
 
 def _own_text(data_type: Any) -> Kind:
+    """A class that reads itself; also from other values with `from_value`. With `ANY_ENTRY` its ports give an entry no type: each converts."""
+    from_value = getattr(data_type, "from_value", None)
+
     def cast(value: Any) -> Any:
         if isinstance(value, data_type):
             return value
+        if from_value is not None:
+            return from_value(value)
         if isinstance(value, (int, float, tuple)):
             return parse(";".join(map(str, value)) if isinstance(value, tuple) else str(value))
         raise ValueError(f"expected a {data_type.__name__}")
@@ -135,7 +140,7 @@ def _own_text(data_type: Any) -> Kind:
             raise ValueError(str(error) or type(error).__name__) from None
 
     form = getattr(data_type, "TEXT_FORM", f"a {data_type.__name__}")
-    return Kind(data_type.__name__, form, parse, cast, data_type)
+    return Kind(data_type.__name__, form, parse, cast, data_type, typed=not getattr(data_type, "ANY_ENTRY", False))
 
 
 def _only_objects(data_type: Any) -> Kind:

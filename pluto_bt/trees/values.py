@@ -101,15 +101,15 @@ def parse_bool(text: str) -> bool:
     raise ValueError("expected true or false")
 
 
-def has_trailing_text(kind: Kind, text: str) -> bool:
-    """True if reading `text` as a number would silently drop its end ("10abc" is read as 10)."""
+def trailing_text(kind: Kind, text: str) -> str:
+    """What reading `text` as a number would silently drop at its end ("abc" of "10abc", which is read as 10)."""
     if kind in (INT, INT64, UINT):
         found = _INTEGER.match(text)
     elif kind is DOUBLE:
         found = REAL.match(text)
     else:
-        return False
-    return found is not None and found.end() != len(text)
+        return ""
+    return text[found.end() :] if found is not None else ""
 
 
 def literal_value(text: str) -> int | float | str:

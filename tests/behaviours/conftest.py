@@ -8,12 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
+from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
+from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, ImuState, MarkerState, Message, Pair, Pose, SpeedState
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.maps.platform import Body, Bumpers, Devices, Inertial, Laser, Limits, MarkerCamera, Platform, Sonar, Transducer, WheelSpeed, Wrist
 from pluto_bt.maps.world import World
 from pluto_bt.runtime import VirtualClock
+from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.plan_parameters import PlanParameters
+from pluto_bt.skills.sight import ScanView
 
 STALE_S = {topic.name: topic.stale_after_s for topic in TOPICS}
 BOX = ((0.5, 0.4), (-0.5, 0.4), (-0.5, -0.4), (0.5, -0.4))
@@ -45,9 +50,20 @@ class FakeRobot:
         self.refuse = ""
         self.alarms_read = 0
         self.resumes = 0
+        self.views: list[ScanView] = []
+        self._surroundings: Surroundings | None = None
+        self._navigation: Navigation | None = None
         self.says = FVectorState(0.0, (0.0, 0.0), (0, -1, 0, 0))
 
-    def command(self, flags: int, position: Pair = (0.0, 0.0), velocity: Pair = (0.0, 0.0), tolerance_m: float = 0.0, force: float = 1.0) -> Ticket:
+    def command(
+        self,
+        flags: int,
+        position: Pair = (0.0, 0.0),
+        velocity: Pair = (0.0, 0.0),
+        tolerance_m: float = 0.0,
+        force: float = 1.0,
+        on_the_way: bool = False,
+    ) -> Ticket:
         command = ActuatorState(self.clock.now_s(), int(flags), position, velocity, (tolerance_m, 0.0), (force,))
         self.commands.append(command)
         return Ticket(command, self.refuse)
@@ -64,6 +80,22 @@ class FakeRobot:
     def is_stale(self, topic: str) -> bool:
         return topic not in self.values or 0.0 < STALE_S[topic] < self.age_s(topic)
 
+    @property
+    def surroundings(self) -> Surroundings:
+        if self._surroundings is None:
+            self._surroundings = Surroundings(self.platform, MotionParameters())
+        return self._surroundings
+
+    @property
+    def navigation(self) -> Navigation:
+        if self._navigation is None:
+            self._navigation = Navigation(self.platform, self.map, self.surroundings, PlanParameters())
+        return self._navigation
+
+    def scan_views(self) -> tuple[ScanView, ...]:
+        views, self.views = tuple(self.views), []
+        return views
+
     def point_wrist(self, *target: float) -> None:
         self.pointed.append(target)
 
@@ -79,7 +111,7 @@ class FakeRobot:
     def is_at(self, x: float, y: float, theta: float = 0.0, speed: float = 0.0) -> None:
         """Fresh pose and odometry."""
         now_s = self.clock.now_s()
-        self.values["Localization/Pose"] = Pose(now_s, (x, y, 0.0, theta, 0.0, 0.0))
+        self.values["Localization/Pose"] = self.values["Localization/Dead-Reckoning"] = Pose(now_s, (x, y, 0.0, theta, 0.0, 0.0))
         self.values["ATRV2/Drive/Raw"] = ActuatorState(now_s, 0, (x, theta), (speed, 0.0))
 
 

@@ -11,7 +11,7 @@ import pytest
 from pluto_bt.behaviours.catalogue import ACTIONS, CONDITIONS, LEAVES
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
 from pluto_bt.behaviours.reasons import REASONS, WAITING
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, ImuState
+from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, ImuState
 from pluto_bt.trees import TickError, load_mission
 
 GOTO = '<GoTo goal="3;4" reason="{why}"/>'
@@ -114,6 +114,20 @@ def test_goto_fails_with_a_word_of_the_list(stage: Any, status: FVectorState, re
     assert stage.clock.now_s() == pytest.approx(after_s, abs=0.11)
 
 
+def test_a_bumper_that_is_released_in_time_gets_the_new_command_that_opens_its_latch(stage: Any) -> None:
+    mission = stage.load(GOTO)
+    stage.robot.says = said(1, -1, 0, 0)
+    stage.robot.values["ATRV2/Bumper"] = BumperState(0.0, front=True)
+    run(stage, mission, 0.5)
+    pressed = len(stage.robot.commands)
+    stage.robot.values["ATRV2/Bumper"] = BumperState(stage.clock.now_s())
+    run(stage, mission, 0.1)
+    assert len(stage.robot.commands) == pressed + 1
+    assert stage.robot.commands[-1].position == (3.0, 4.0)
+    stage.robot.says = said(0, -1, 0, 0)
+    assert run(stage, mission, 2.0) == "RUNNING"
+
+
 @pytest.mark.parametrize("waiting", [said(6, -1, 0, 0, reason="laser"), said(3, -1, 0, 0, reason="sonar"), said(7, -1, 0, 0)])
 def test_an_obstacle_or_a_short_reboot_is_waited_for(stage: Any, waiting: FVectorState) -> None:
     mission = stage.load(GOTO)
@@ -159,11 +173,11 @@ def test_after_a_pause_the_command_is_given_again_and_the_pause_is_no_time(stage
     assert stage.clock.now_s() == pytest.approx(62.1, abs=0.2)
 
 
-@pytest.mark.parametrize("leaf", [kind for kind in LEAVES if kind.__name__ not in ("Say", "Phase")])
+@pytest.mark.parametrize("leaf", [kind for kind in (*ACTIONS, *CONDITIONS) if kind.__name__ not in ("Say", "Phase")])
 def test_without_a_robot_a_leaf_fails_with_not_connected(leaf: Any) -> None:
     given = {
         "goal": "1;1", "angle_deg": "90", "heading_deg": "0", "voltage_v": "24", "area": "a", "topic": "wrist/state", "field": "flags", "value": "1",
-        "rectangle": "2;3", "radius_m": "2",
+        "rectangle": "2;3", "radius_m": "2", "path": "1,2;3,4",
     }  # fmt: skip
     ports = " ".join(f'{name}="{given[name]}"' for name, port in leaf.input_ports().items() if port.required)
     reason = 'reason="{why}"' if "reason" in leaf.output_ports() else ""

@@ -100,7 +100,8 @@ NODES = {
         tree('<SubTree ID="B"/>', more=other() + '<TreeNodesModel><SubTree ID="B"><input_port name="g"/></SubTree></TreeNodesModel>'),
         "3:5 missing-port"),
     "two types on one key": (
-        tree(f'<Repeat num_cycles="{{x}}"><RunOnce then_skip="{{x}}">{OK}</RunOnce></Repeat>'), "3:50 type-clash"),
+        tree(f'<Sequence><Script code="x:=1"/><Repeat num_cycles="{{x}}"><RunOnce then_skip="{{x}}">{OK}</RunOnce></Repeat></Sequence>'),
+        "3:81 type-clash"),
     "two @": (tree('<Sleep msec="{@b@c}"/>'), "3:18 bad-key"),
 }  # fmt: skip
 
@@ -130,7 +131,7 @@ SCRIPTS = {
     "no operand": (tree('<Script code="a := "/>'), "3:24 script-syntax"),
     "no number": (tree('<Script code="1."/>'), "3:19 script-syntax"),
     "open text": (tree("<Script code=\"a := 'x\"/>"), "3:24 script-syntax"),
-    "condition": (tree('<AlwaysSuccess _skipIf="a &lt;"/>'), "3:29 script-syntax"),
+    "condition": (tree('<AlwaysSuccess _skipIf="a &lt;"/>'), "3:35 script-syntax"),
     "second line": (tree('<Script code="a := 1;\n  b := )"/>'), "4:8 script-syntax"),
     "brackets": (tree(f'<Script code="{"(" * 3000}1{")" * 3000}"/>'), "3:70 script-syntax"),
     "signs": (tree(f'<Script code="{"-" * 50_000}1"/>'), "3:70 script-syntax"),

@@ -99,10 +99,12 @@ class Rig:
         return sample.value
 
     def order(
-        self, flags: int, position: Point = (0.0, 0.0), velocity: Point = (0.0, 0.0), force: float = 0.0, to: str = "motion", tolerance: float = 0.0
-    ) -> str:
+        self, flags: int, position: Point = (0.0, 0.0), velocity: Point = (0.0, 0.0), force: float | tuple[float, ...] = 0.0, to: str = "motion",
+        tolerance: float = 0.0,
+    ) -> str:  # fmt: skip
         """Post a command as the mission does."""
-        return self.inboxes[to].post("mission", ActuatorState(self.now, flags, position, velocity, (tolerance, 0.0), (force,)))
+        forces = force if isinstance(force, tuple) else (force,)
+        return self.inboxes[to].post("mission", ActuatorState(self.now, flags, position, velocity, (tolerance, 0.0), forces))
 
     def stop(self) -> None:
         """The operator's stop."""

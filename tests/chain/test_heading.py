@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.drive import DriveParameters, drive_limits
-from pluto_bt.skills.heading import Line, regulate, wrap
+from pluto_bt.skills.heading import Line, regulate
 from pluto_bt.skills.limits import within
 from tests.chain.robots import ATRV2, CAR
 
@@ -37,7 +38,7 @@ def test_a_given_turn_rate_lowers_the_limit() -> None:
 def test_it_settles_without_overshoot(target: float) -> None:
     heading, w = 0.0, 0.0
     for _ in range(400):
-        wanted = regulate(wrap(target - heading), 0.0, LIMITS)[1]
+        wanted = regulate(wrap_angle(target - heading), 0.0, LIMITS)[1]
         w += max(-1.0, min(1.0, (wanted - w) / (LIMITS.turn_acceleration_radps2 * 0.02))) * LIMITS.turn_acceleration_radps2 * 0.02
         heading += w * 0.02
         assert (target - heading) * math.copysign(1.0, target) > -0.03

@@ -8,83 +8,18 @@ from typing import Any
 
 import pytest
 
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LocalMapState
-from pluto_bt.commands.inputs import Request, read_inputs
-from pluto_bt.runner import Runner, make_runner
-from pluto_bt.runtime.clock import NS
+from pluto_bt.blackboard.messages import LocalMapState
+from tests.raw_robot import RawRobot
 
-WAIT = '<root BTCPP_format="4"><BehaviorTree ID="wait"><Sleep msec="100000000"/></BehaviorTree></root>'
 STREET = """<world name="lane" seed="1">
   <wall id="lane">0,0 30,0 30,8 0,8 0,0</wall> {more}
   <robot platform="atrv2" x="3" y="4" theta_deg="0"/>
 </world>"""
 
 
-class Robot:
-    """A running robot that a test commands by hand; `codes` are the different (element[2], element[3]) that motion has shown."""
-
-    def __init__(self, folder: Path, world: str, seed: int = 1) -> None:
-        (folder / "wait.xml").write_text(WAIT, encoding="utf-8")
-        (folder / "world.xml").write_text(world, encoding="utf-8")
-        inputs = read_inputs(Request(str(folder / "wait.xml"), world=str(folder / "world.xml"), seed=str(seed)))
-        self.runner: Runner = make_runner(inputs)
-        self.system = self.runner.system
-        self.codes: list[tuple[int, int]] = []
-        self.links: list[tuple[int, int]] = []
-        self.deepest = math.inf  # how far inside the rectangle the robot really was at the worst
-        self.system.board.on_change("motion/status", self._note)
-        self.system.executive.core.start(self.runner.mission)
-        self.system.start_parts()
-        self.system.scheduler.start()
-        self.system.scheduler.run_until(NS // 2)
-
-    @property
-    def now_s(self) -> float:
-        return self.system.clock.now_s()
-
-    @property
-    def status(self) -> FVectorState:
-        sample = self.system.board.newest("motion/status")
-        assert sample is not None and isinstance(sample.value, FVectorState)
-        return sample.value
-
-    @property
-    def pose(self) -> tuple[float, float, float]:
-        return self.system.simulator.pose
-
-    def order(self, flags: int, position: Any = (0.0, 0.0), velocity: Any = (0.0, 0.0), force: Any = (0.0,)) -> None:
-        """Post and forget the codes shown so far."""
-        self.codes.clear()
-        self.links.clear()
-        assert self.system.inboxes["motion"].post("operator", ActuatorState(self.now_s, flags, position, velocity, (0.0, 0.0), force)) == ""
-
-    def run(self, seconds: float, until: Any = lambda: False) -> bool:
-        """Let time pass; True as soon as `until` holds."""
-        end_ns = self.system.clock.now_ns() + round(seconds * NS)
-        while self.system.clock.now_ns() < end_ns:
-            self.system.scheduler.run_until(self.system.clock.now_ns() + NS // 10)
-            rectangle = self.system._parts["motion"].component._skill.rectangle
-            if rectangle is not None:
-                self.deepest = min(self.deepest, rectangle.depth_m(*self.pose[:2]))
-            if until():
-                return True
-        return False
-
-    def is_at_rest(self) -> bool:
-        return self.status.element[3] in (0, -1)
-
-    def _note(self) -> None:
-        code = (self.status.element[2], self.status.element[3])
-        if not self.codes or self.codes[-1] != code:
-            self.codes.append(code)
-        link = (self.status.element[0], self.status.element[1])
-        if not self.links or self.links[-1] != link:
-            self.links.append(link)
-
-
 @pytest.fixture
 def robot(tmp_path: Path) -> Any:
-    return lambda more="", seed=1: Robot(tmp_path, STREET.format(more=more), seed)
+    return lambda more="", seed=1: RawRobot(tmp_path, STREET.format(more=more), seed)
 
 
 def test_moveto_shows_scanning_following_near_and_at_goal(robot: Any) -> None:
@@ -220,3 +155,135 @@ def test_investigate_approaches_and_circles(robot: Any) -> None:
     assert [code for code in r.codes if code[1] in (11, 12)] == [(0, 11), (0, 12)]
     assert max(abs(distance - 2.0) for distance in away) < 0.2
     assert r.system.board.newest("arm/state").value.position[0] == 1.0
+
+
+def test_45_while_a_job_is_at_work_changes_nothing(robot: Any) -> None:
+    r = robot()
+    r.order(42, (20.0, 4.0))
+    r.run(12.0)
+    r.order(45)
+    r.run(3.0)
+    assert r.codes == [(-1, 3)]
+    assert r.velocity[0] > 0.3
+
+
+def test_46_in_the_middle_of_a_moveto_only_sets_and_the_moveto_goes_on(robot: Any) -> None:
+    r = robot()
+    r.order(42, (14.0, 4.0))
+    r.run(9.0)
+    r.order(46, (2.5, 4.0), (3.0, 25.0))
+    assert r.run(60.0, r.is_at_rest)
+    assert r.codes == [(-1, 1), (-1, 3), (-2, 3), (1, -1)]
+    assert math.dist(r.pose[:2], (14.0, 4.0)) < 0.5
+
+
+@pytest.mark.parametrize(("home", "sides", "reason"), [((2.5, 4.0), (3.0, 6.0), "outside-rectangle"), ((2.5, 4.0), (-3.0, 6.0), "bad-command")])
+def test_46_that_shuts_the_goal_out_or_makes_no_sense_ends_the_moveto(robot: Any, home: Any, sides: Any, reason: str) -> None:
+    r = robot()
+    r.order(42, (14.0, 4.0))
+    r.run(9.0)
+    r.order(46, home, sides)
+    r.run(2.0)
+    assert r.status.reason == reason
+    assert r.is_at_rest()
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_rectangle_is_seen_set_at_rest_between_stop_and_resume(robot: Any) -> None:
+    """The manual: check element[3] == -1, but send a stop to the robot first, then a resume after."""
+    r = robot()
+    r.order(42, (14.0, 4.0))
+    r.run(9.0)
+    r.order(0)
+    r.run(1.0)
+    assert r.status.element[2:] == (-1, 0)
+    r.order(46, (2.5, 4.0), (3.0, 25.0))
+    r.run(0.3)
+    assert r.status.element[2:] == (-1, -1)
+    r.order(45)
+    assert r.run(60.0, r.is_at_rest)
+    assert r.codes == [(-1, 1), (-1, 3), (-2, 3), (1, -1)]
+
+
+def test_a_stopped_explore_goes_on_where_it_was_and_home_to_the_home_of_46(robot: Any) -> None:
+    r = robot()
+    r.order(44, velocity=(3.5, 14.0))
+    assert r.run(30.0, lambda: r.pose[0] > 7.0)
+    r.order(0)
+    r.run(1.0)
+    assert r.status.element[2:] == (0, -1), "-1 is for a moveto point that is set, and there is none yet"
+    covered_m2 = r.system.board.newest("map/local").value.covered_m2
+    r.order(46, (4.0, 4.0), (3.5, 13.0))
+    r.run(0.3)
+    r.order(45)
+    r.run(2.0)
+    assert r.status.element[2:] == (0, 1)
+    assert r.system.board.newest("map/local").value.covered_m2 > 0.7 * covered_m2, "coverage is kept"
+    assert r.run(200.0, lambda: r.status.element[2] == -2)
+    r.order(0)
+    r.run(1.0)
+    assert r.status.element[2:] == (-1, -1), "stopped on the way home"
+    r.order(45)
+    assert r.run(200.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, -1), r.status.text
+    assert math.dist(r.pose[:2], (4.0, 4.0)) < 0.6
+
+
+def test_44_starts_anew_with_home_where_the_robot_is(robot: Any) -> None:
+    r = robot()
+    r.order(44, velocity=(3.5, 20.0))
+    assert r.run(40.0, lambda: r.pose[0] > 6.0)
+    r.order(0)
+    r.run(1.5)
+    home = r.pose
+    r.order(44, velocity=(3.5, 9.0))
+    assert r.run(200.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, -1)
+    assert math.dist(r.pose[:2], home[:2]) < 0.6
+
+
+@pytest.mark.parametrize("theta", [0.0, 2.0])
+def test_an_explore_from_the_middle_of_its_rectangle_looks_behind_the_robot_too(robot: Any, theta: float) -> None:
+    r = robot()
+    back = (9.0 - 6.0 * math.cos(theta), 4.0 - 2.0 * math.sin(theta))
+    r.order(32, (9.0, 4.0), (0.5, 0.0))
+    assert r.run(40.0, lambda: r.status.element[1] == 1)
+    r.order(46, (2.0, 4.0), (3.5, 16.0)) if theta == 0.0 else r.order(46, back, (3.0, 7.0), (theta,))
+    r.run(0.3)
+    r.order(45)
+    assert r.run(300.0, r.is_at_rest), "it ends"
+    assert r.status.element[2:] == (1, -1), r.status.text
+
+
+def test_a_stopped_investigate_is_taken_up_again(robot: Any) -> None:
+    r = robot('<circle id="bin" x="12" y="4" r="0.4"/>')
+    r.order(43, velocity=(2.0, 1.0))
+    assert r.run(60.0, lambda: r.pose[0] > 5.0)
+    r.order(0)
+    r.run(1.0)
+    assert r.status.element[2:] == (0, 0)
+    r.order(45)
+    assert r.run(200.0, r.is_at_rest)
+    assert r.status.element[2:] == (2, 0), r.status.text
+    assert [code for code in r.codes if code[1] in (11, 12)] == [(0, 11), (0, 12)]
+
+
+def test_a_job_waits_while_the_laser_reboots_and_goes_on(robot: Any) -> None:
+    r = robot('<script><at t="12"><fault device="laser" kind="fatal"/></at></script>')
+    r.order(42, (14.0, 4.0))
+    r.run(16.0)
+    assert (r.status.element[0], r.status.element[2:]) == (7, (-1, 3))
+    assert r.run(90.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, 0), r.status.text
+
+
+def test_a_job_that_was_driven_away_from_its_ray_finds_a_new_one(robot: Any) -> None:
+    r = robot()
+    r.order(42, (20.0, 4.0))
+    r.run(15.0)
+    r.order(32, (3.0, 2.0), (0.5, 0.0))
+    assert r.run(40.0, lambda: r.status.element[1] == 1)
+    assert r.status.element[2:] == (-1, 0)
+    r.order(45)
+    assert r.run(120.0, r.is_at_rest)
+    assert r.status.element[2:] == (1, 0)

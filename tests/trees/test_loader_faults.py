@@ -90,7 +90,7 @@ def test_refused_at_load(body: str, faults: list[str]) -> None:
 ONLY_WHILE_TICKING = [
     ("<Sleep/>", ['2:1 error missing-port: port "msec" of <Sleep> is missing']),
     ("<IfThenElse><AlwaysSuccess/></IfThenElse>", ["2:1 error child-count: <IfThenElse> has the wrong number of children"]),
-    ('<Switch2 variable="{x}"><AlwaysSuccess/></Switch2>', ["2:1 error child-count: <Switch2> has the wrong number of children"]),
+    ('<Switch2 variable="x"><AlwaysSuccess/></Switch2>', ["2:1 error child-count: <Switch2> has the wrong number of children"]),
     ('<Parallel success_count="2"><AlwaysSuccess/></Parallel>', ["2:26 error threshold: success_count is more than the number of children"]),
     ('<ParallelAll max_failures="5"><AlwaysSuccess/></ParallelAll>', ["2:28 error threshold: max_failures is more than the number of children"]),
     ('<Precondition if="true" else="WRONG"><AlwaysSuccess/></Precondition>', ['2:31 error bad-literal: "WRONG" does not fit port "else"']),
@@ -105,7 +105,7 @@ def test_an_error_of_ticking_is_told_by_check_but_does_not_stop_loading(body: st
 
 WARNINGS = [
     ('<Sleep msec="10abc"/>', ['2:14 warning trailing-text: "10abc" is read as 10']),
-    ('<Repeat num_cycles="0.9"><AlwaysSuccess/></Repeat>', ['2:21 warning trailing-text: "0.9" is read as 0']),
+    ('<Repeat num_cycles="1.9"><AlwaysSuccess/></Repeat>', ['2:21 warning trailing-text: "1.9" is read as 1']),
     ('<AlwaysSuccess _skipif="true"/>', ['2:16 warning ignored-attribute: attribute "_skipif" is ignored']),
     ("<Switch2><AlwaysSuccess/><AlwaysSuccess/><AlwaysSuccess/></Switch2>",
      ["2:1 warning missing-port: <Switch2> without variable always takes its last child"]),

@@ -2,64 +2,57 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
+from py_trees.common import Status
+
 from pluto_bt.trees.engine.node import ControlNode, reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
 
 
-class ReactiveSequence(ControlNode):
+class Reactive(ControlNode):
+    """Goes on to the next child after each that returns `GOES_ON`; the first that returns `DECIDES` decides. SKIPPED if all were skipped."""
+
+    GOES_ON: ClassVar[Status]
+    DECIDES: ClassVar[Status]
+
+    def step(self) -> Result:
+        if self.status is not RUNNING:
+            self.status = RUNNING
+            self.last = IDLE
+        all_skipped = True
+        for child in self.children:
+            result: Result = child.step()
+            if result is self.GOES_ON:
+                all_skipped = False
+            elif result is RUNNING:
+                _silence_others(self, child)
+                return RUNNING
+            elif result is self.DECIDES:
+                return self._ended(self.DECIDES)
+            elif result is SKIPPED:
+                reset(child)  # so that it can be skipped again
+        if all_skipped:
+            self.reset_children()
+            return self.skip()
+        return self._ended(self.GOES_ON)
+
+    def _ended(self, status: Status) -> Result:
+        self.reset_children()
+        self.status = status
+        return status
+
+
+class ReactiveSequence(Reactive):
     """Conditions first, then the work: the conditions are asked again in every tick while the work is RUNNING."""
 
-    def step(self) -> Result:
-        if self.status is not RUNNING:
-            self.status = RUNNING
-            self.last = IDLE
-        all_skipped = True
-        for child in self.children:
-            result: Result = child.step()
-            if result is SUCCESS:
-                all_skipped = False
-            elif result is RUNNING:
-                _silence_others(self, child)
-                return RUNNING
-            elif result is FAILURE:
-                self.reset_children()
-                self.status = FAILURE
-                return FAILURE
-            elif result is SKIPPED:
-                reset(child)  # so that it can be skipped again
-        self.reset_children()
-        if all_skipped:
-            return self.skip()
-        self.status = SUCCESS
-        return SUCCESS
+    GOES_ON, DECIDES = SUCCESS, FAILURE
 
 
-class ReactiveFallback(ControlNode):
+class ReactiveFallback(Reactive):
     """Better plans first: each tick tries them again, and the plan that was RUNNING is halted when a better one runs."""
 
-    def step(self) -> Result:
-        if self.status is not RUNNING:
-            self.status = RUNNING
-            self.last = IDLE
-        all_skipped = True
-        for child in self.children:
-            result: Result = child.step()
-            if result is FAILURE:
-                all_skipped = False
-            elif result is RUNNING:
-                _silence_others(self, child)
-                return RUNNING
-            elif result is SUCCESS:
-                self.reset_children()
-                self.status = SUCCESS
-                return SUCCESS
-            elif result is SKIPPED:
-                reset(child)  # so that it can be skipped again
-        self.reset_children()
-        if all_skipped:
-            return self.skip()
-        self.status = FAILURE
-        return FAILURE
+    GOES_ON, DECIDES = FAILURE, SUCCESS
 
 
 def _silence_others(node: ControlNode, running: object) -> None:

@@ -11,16 +11,29 @@ from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.values import UINT
 
 
-class Timeout(DecoratorNode):
+class Timed(DecoratorNode):
+    """A decorator with one timer, set when it is activated."""
+
+    def __init__(self, name: str = "", child: Any = None) -> None:
+        super().__init__(name, child)
+        self.started = False
+        self.timer: Timer | None = None
+
+    def forget(self) -> None:
+        self.started = False
+        if self.timer is not None:
+            self.timer.cancel()
+            self.timer = None
+
+
+class Timeout(Timed):
     """Halts the running child when the time is over, at that very moment; the next tick then fails without ticking the child."""
 
     PORTS: ClassVar = {"msec": PortModel("msec", kind=UINT, unit="ms", description="time allowed; 0: no limit")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
-        self.started = False
         self.expired = False
-        self.timer: Timer | None = None
 
     def step(self) -> Result:
         limit_ms = self.read("msec")
@@ -50,23 +63,15 @@ class Timeout(DecoratorNode):
             reset(self.child)
             self.context.wake_up()
 
-    def forget(self) -> None:
-        self.started = False
-        if self.timer is not None:
-            self.timer.cancel()
-            self.timer = None
 
-
-class Delay(DecoratorNode):
+class Delay(Timed):
     """RUNNING until the time is over, then the child; each activation waits again."""
 
     PORTS: ClassVar = {"delay_msec": PortModel("delay_msec", kind=UINT, unit="ms", description="how long to wait before the child")}
 
     def __init__(self, name: str = "", child: Any = None) -> None:
         super().__init__(name, child)
-        self.started = False
         self.over = False
-        self.timer: Timer | None = None
 
     def step(self) -> Result:
         delay_ms = self.read("delay_msec")
@@ -90,9 +95,3 @@ class Delay(DecoratorNode):
     def _wake(self) -> None:
         self.over = True
         self.context.wake_up()
-
-    def forget(self) -> None:
-        self.started = False
-        if self.timer is not None:
-            self.timer.cancel()
-            self.timer = None

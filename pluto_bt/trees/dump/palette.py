@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from xml.sax.saxutils import escape
+from xml.sax.saxutils import escape, quoteattr
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.engine.status import NAME_OF_STATUS
@@ -37,17 +37,19 @@ def nodes_xml(types: Mapping[str, NodeType] | None = None, *, builtin: bool = Fa
 
 
 def model_lines(node_type: NodeType, indent: str) -> list[str]:
-    """The model of one node type."""
-    name = escape(node_type.name, {'"': "&quot;"})
-    if not node_type.ports:
-        return [f'{indent}<{node_type.kind} ID="{name}"/>']
-    lines = [f'{indent}<{node_type.kind} ID="{name}">']
+    """The model of one node type; what it does stands in its metadata, where BehaviorTree.CPP keeps such words."""
+    name = quoteattr(node_type.name)
+    if not node_type.ports and not node_type.description:
+        return [f"{indent}<{node_type.kind} ID={name}/>"]
+    lines = [f"{indent}<{node_type.kind} ID={name}>"]
     for port in node_type.ports.values():
         tag, kind = TAGS[port.direction], TYPE_NAMES.get(port.kind.name, port.kind.name)
-        default = f' default="{escape(default_text(port), {chr(34): "&quot;"})}"' if port.default is not None else ""
-        text = escape(port.description + (f" ({port.unit})" if port.unit else ""))
-        head = f'{indent}  <{tag} name="{port.name}" type="{escape(kind)}"{default}'
-        lines.append(f"{head}>{text}</{tag}>" if text else f"{head}/>")
+        default = f" default={quoteattr(default_text(port))}" if port.default is not None else ""
+        text = escape(f"{port.description} ({port.form})" if port.description else port.form)
+        lines.append(f'{indent}  <{tag} name="{port.name}" type={quoteattr(kind)}{default}>{text}</{tag}>')
+    if node_type.description:
+        metadata = f"<Metadata description={quoteattr(node_type.description)}/>"
+        lines.append(f"{indent}  <MetadataFields>{metadata}</MetadataFields>")
     return [*lines, f"{indent}</{node_type.kind}>"]
 
 

@@ -38,6 +38,15 @@ class Plan:
         """As statuses and errors show it."""
         return self.node_type.name if self.node_type is not None else "SubTree"
 
+    def walk(self) -> list[Plan]:
+        """This node and all below, depth first."""
+        found, waiting = [], [self]
+        while waiting:
+            plan = waiting.pop()
+            found.append(plan)
+            waiting.extend(reversed(plan.children))
+        return found
+
 
 class TooManyNodes(Exception):  # noqa: N818  it only ends the expansion; the fault is in the report
     """The limit of nodes is reached."""
@@ -51,6 +60,7 @@ class Expansion:
         self._uid = 0
         self._subtree_paths: dict[str, Place] = {}
         self._declared_at: dict[int, Place] = {}
+        self._by_models: set[int] = set()  # entries whose kind is only what the model of a foreign node says
         self._entries: list[Entry] = []  # keeps them alive, so that their ids stay theirs
         self.used: dict[str, None] = {}
 
@@ -180,13 +190,17 @@ class Expansion:
                     continue
                 self._declared_at[id(entry)] = attribute.value_place
                 self._entries.append(entry)
+                if plan.node_type.make is None:
+                    self._by_models.add(id(entry))
             elif entry.kind is not None and entry.kind.typed and kind.typed and entry.kind is not kind and entry.kind is not STRING:
-                self._type_clash(attribute, port.name, key, entry, kind.name)
+                self._type_clash(plan.node_type, attribute, port.name, key, entry, kind.name)
 
-    def _type_clash(self, attribute: XmlAttribute, port: str, key: str, entry: Entry, kind: str) -> None:
+    def _type_clash(self, node_type: NodeType, attribute: XmlAttribute, port: str, key: str, entry: Entry, kind: str) -> None:
         first = self._declared_at.get(id(entry))
         where = f" since {first.file or '<text>'}:{first.line}" if first is not None else ""
         holds = entry.kind.name if entry.kind is not None else ""
         what = f'entry "{key}" holds {holds}{where}; port "{port}" needs {kind}'
         mend = "write the literal as the port needs it" if first is None and kind_of_value(entry.value) is not None else "use another entry"
-        self._report.error(attribute.value_place, "type-clash", what, expected=kind, found=holds, mend=mend)
+        is_sure = node_type.make is not None and id(entry) not in self._by_models  # models are often careless about types
+        tell = self._report.error if is_sure else self._report.warning
+        tell(attribute.value_place, "type-clash", what, expected=kind, found=holds, mend=mend)

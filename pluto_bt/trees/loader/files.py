@@ -9,6 +9,8 @@ from pathlib import Path
 from pluto_bt.source import Faults, Place, did_you_mean
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, name_problem
+from pluto_bt.trees.loader.version3 import SUBTREE_HINT
+from pluto_bt.trees.ports import Direction
 
 MAX_INCLUDES = 50  # levels
 ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include")
@@ -32,7 +34,7 @@ class ModelPort:
     """One port of a model in TreeNodesModel."""
 
     name: str
-    direction: str
+    direction: Direction
     type_name: str
     default: str | None
     description: str
@@ -60,6 +62,7 @@ class MissionFiles:
     node_models: dict[str, Model] = field(default_factory=dict)
     root: XmlElement | None = None
     unnamed: int = 0
+    paths: list[str] = field(default_factory=list)  # of all files that were read, but those of the library
     _open: list[str] = field(default_factory=list)
     _read: set[str] = field(default_factory=set)
 
@@ -72,6 +75,7 @@ class MissionFiles:
     def read_file(self, path: Path, shown: str) -> None:
         """Read a mission file."""
         self.root = read_xml_file(path, shown, self.faults)
+        self.paths.append(str(path))
         if self.root is not None:
             self._open.append(os.path.realpath(path))
             self._take_document(self.root, shown, path.parent)
@@ -99,10 +103,11 @@ class MissionFiles:
             self.faults.error(root.place, "bad-root", f"the root element is <{root.tag}>", expected="<root>", found=f"<{root.tag}>")
             return
         if "BTCPP_format" not in root.attributes:
-            self.faults.warning(root.place, "no-format", "BTCPP_format is missing", expected='BTCPP_format="4"', found="none")
+            self.faults.warning(root.place, "no-format", "BTCPP_format is missing", expected='BTCPP_format="4"', found="none", mend=SUBTREE_HINT)
         elif root.get("BTCPP_format") != "4":
             place = root.attributes["BTCPP_format"].value_place
-            self.faults.warning(place, "other-format", "the file says it is of another format", expected="4", found=root.get("BTCPP_format"))
+            what, found = "the file says it is of another format", root.get("BTCPP_format")
+            self.faults.warning(place, "other-format", what, expected="4", found=found, mend=SUBTREE_HINT)
         for element in root.children:
             if element.tag == "include":
                 self._include(element, shown, folder)
@@ -176,6 +181,7 @@ class MissionFiles:
         if real in self._read:
             return  # its trees are here already
         self._read.add(real)
+        self.paths.append(str(path))
         self._open.append(real)
         root = read_xml_file(path, shown, self.faults)
         if root is not None:
@@ -196,7 +202,7 @@ class MissionFiles:
 
     def _model(self, element: XmlElement) -> Model:
         model = Model(element.tag, element.get("ID"), element)
-        tags = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
+        tags: dict[str, Direction] = {"input_port": "in", "output_port": "out", "inout_port": "inout"}
         for port in element.children:
             if port.tag in tags and "name" in port.attributes:
                 name, default = port.get("name"), port.attributes.get("default")

@@ -29,20 +29,20 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
     for name, text in (given or {}).items():
         _check_name(name, model, main, report)
         port = model.ports.get(name) if model is not None else None
-        _write(root, name, text, port.type_name if port is not None else "", report)
+        _write(root, name, text, port.type_name if port is not None else "", Place(f"--port {name}={text}"), report)
     for port in model.ports.values() if model is not None else ():
         entry = root.find(port.name)
         if (entry is not None and entry.value is not EMPTY) or port.direction == "out":
             continue
         if port.default is not None:
-            _write(root, port.name, port.default, port.type_name, report)
+            _write(root, port.name, port.default, port.type_name, port.element.attributes["default"].value_place, report)
         elif given is not None:
             what = f'input "{port.name}" of {main.tree_id!r} is not given'
             wanted, mend = port.description or port.type_name or "a value", f"add --port {port.name}=VALUE"
             report.error(port.element.place, "missing-input", what, expected=wanted, found="nothing", mend=mend)
 
 
-def _write(root: Scope, name: str, text: str, type_name: str, report: Report) -> None:
+def _write(root: Scope, name: str, text: str, type_name: str, place: Place, report: Report) -> None:
     """Typed as a SubTree's literal is, but that digits for an input declared as a real number are one."""
     kind = DECLARED.get(type_name)
     if kind is not None:
@@ -50,13 +50,13 @@ def _write(root: Scope, name: str, text: str, type_name: str, report: Report) ->
             kind.parse(text)
         except ValueError as error:
             what = f'input "{name}" is declared as {type_name}; "{text}" is none'
-            report.error(Place(f"--port {name}={text}"), "bad-input", what, expected=kind.form, found=text, mend=str(error))
+            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=str(error))
             return
     try:
         value = literal_value(text)
         root.write(name, float(value) if type_name in REALS and isinstance(value, int) else value)
     except PortProblem as problem:
-        report.error(Place(f"--port {name}"), "bad-input", str(problem), found=text)
+        report.error(place, "bad-input", str(problem), expected="a value of the entry's kind", found=text)
 
 
 def _check_name(name: str, model: Model | None, main: TreeSource, report: Report) -> None:

@@ -1,4 +1,4 @@
-"""`load_mission` and `check_mission`."""
+"""`load_mission`, and the reading that loading and checking have in common."""
 
 from __future__ import annotations
 
@@ -10,18 +10,19 @@ from pathlib import Path
 from typing import Any
 
 from pluto_bt.runtime.clock import MissionClock
-from pluto_bt.source import Fault, Faults, Place, did_you_mean
+from pluto_bt.source import Faults, Place, did_you_mean
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
+from pluto_bt.trees.loader.foreign import add_models
 from pluto_bt.trees.loader.inputs import set_inputs
 from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
-from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.mission import Mission, Origin
 from pluto_bt.trees.scopes import Board, Topics
 
 
@@ -35,6 +36,13 @@ class Reading:
     report: Report
     main: TreeSource | None = None
     plan: Plan | None = None
+    text: str = ""
+    file: str = ""
+
+    @property
+    def origin(self) -> Origin:
+        """Where the mission came from."""
+        return Origin(self.text, self.file, tuple(self.files.paths))
 
 
 def load_mission(
@@ -67,7 +75,7 @@ def load_mission(
     Raises: MissionError with all faults, for everything that BehaviorTree.CPP refuses at load.
     """
     with no_collecting():
-        reading = _read(text_or_path, nodes, blackboard, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins)
+        reading = read_mission(text_or_path, nodes, blackboard, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins)
         return _build(reading, clock, enums, robot)
 
 
@@ -81,36 +89,18 @@ def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())
-    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context)
-
-
-def check_mission(
-    text_or_path: str | Path,
-    nodes: Iterable[Any] = (),
-    *,
-    tree: str | None = None,
-    ports: Mapping[str, str] | None = None,
-    topics: Topics | None = None,
-    file: str | None = None,
-    plugins: Sequence[str] = (),
-    models: Sequence[str | Path] = (),
-) -> tuple[Fault, ...]:
-    """All faults of a mission, in the order of the text: also those that BehaviorTree.CPP finds only while ticking, and as warnings those it
-    silently accepts. Makes no node. `models` are files whose TreeNodesModel describes foreign nodes."""
-    with no_collecting():
-        reading = _read(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
-    return reading.report.faults.in_order()
+    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
     """The expanded main tree, without making nodes, for drawing. Raises MissionError."""
-    reading = _read(text_or_path, nodes, None, tree=tree, ports=None, topics=None, file=file, plugins=())
+    reading = read_mission(text_or_path, nodes, None, tree=tree, ports=None, topics=None, file=file, plugins=())
     if reading.report.stops_loading or reading.plan is None:
         raise MissionError(reading.report.faults.in_order())
     return reading.plan
 
 
-def _read(
+def read_mission(
     text_or_path: str | Path,
     nodes: Iterable[Any],
     blackboard: Mapping[str, Any] | None,
@@ -122,6 +112,7 @@ def _read(
     plugins: Sequence[str],
     models: Sequence[str | Path] = (),
 ) -> Reading:
+    """Read the files, check each tree as it is written, and unfold the main tree; the arguments are those of `load_mission`."""
     faults = Faults()
     reading = Reading(MissionFiles(faults), node_types(nodes, plugins), Board(topics), Report(faults))
     _read_files(reading, text_or_path, file, models)
@@ -141,6 +132,7 @@ def _read(
     add_library_trees(reading.files)
     expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
     reading.plan = expansion.run(reading.main)
+    _tell_missing(reading)
     for source in own_trees:
         if source.tree_id not in expansion.used and not faults.has_errors:
             what = f"tree {source.tree_id!r} is not used by {reading.main.tree_id!r}"
@@ -148,24 +140,28 @@ def _read(
     return reading
 
 
+def _tell_missing(reading: Reading) -> None:
+    """Nodes that are known by name alone, where the main tree would run them."""
+    waiting = [reading.plan] if reading.plan is not None else []
+    while waiting:
+        plan = waiting.pop()
+        waiting.extend(plan.children)
+        if plan.node_type is not None and plan.node_type.missing:
+            what = f"<{plan.type_name}> is not there yet: our robots have no {plan.node_type.missing}"
+            reading.report.late(plan.element.place, "not-there-yet", what, expected="another node", found=plan.type_name)
+
+
 def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, models: Sequence[str | Path]) -> None:
     if isinstance(text_or_path, str) and text_or_path.lstrip("\ufeff \t\r\n").startswith("<"):
+        reading.text = text_or_path
         reading.files.read_text(text_or_path, file or "")
     else:
+        reading.file = str(text_or_path)
         reading.files.read_file(Path(text_or_path), file or str(text_or_path))
     for path in models:
         reading.files.read_models(Path(path), str(path))
     if models:
-        for model in reading.files.node_models.values():
-            reading.types.setdefault(model.name, _foreign(model))
-
-
-def _foreign(model: Any) -> NodeType:
-    from pluto_bt.trees.ports import PortModel
-
-    ports = {port.name: PortModel(port.name, port.direction, default=port.default, required=False) for port in model.ports.values()}
-    children = {"Control": (1, None), "Decorator": (1, 1)}.get(model.tag, (0, 0))
-    return NodeType(model.name, model.tag, ports, None, children)
+        add_models(reading.types, reading.files.node_models.values())
 
 
 def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:

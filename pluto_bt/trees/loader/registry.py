@@ -15,6 +15,7 @@ from pluto_bt.trees.controls import CONTROLS
 from pluto_bt.trees.decorators import DECORATORS
 from pluto_bt.trees.engine.node import DecoratorNode, Node
 from pluto_bt.trees.leaves import LEAVES
+from pluto_bt.trees.nav2 import NAV2_NODES
 from pluto_bt.trees.ports import PortModel, models_of_class
 
 EXPLICIT_TAGS: Final = ("Action", "Condition", "Control", "Decorator", "SubTree")
@@ -29,6 +30,7 @@ class NodeType:
         kind: Action, Condition, Control or Decorator.
         make: the class; None for a model without implementation.
         children: fewest and most children while ticking (None: no limit).
+        missing: what our robots lack for it, of a node that is known by name alone; "" for all others.
         builtin: True for the nodes of BehaviorTree.CPP itself.
     """
 
@@ -39,6 +41,12 @@ class NodeType:
     children: tuple[int, int | None] = (0, 0)
     builtin: bool = False
     description: str = ""
+    missing: str = ""
+
+    @property
+    def is_ours(self) -> bool:
+        """True for what pluto_bt itself brings; a user's leaf may do what its ports do not tell."""
+        return self.builtin or getattr(self.make, "__module__", "").startswith("pluto_bt.")
 
 
 def name_problem(name: str) -> str:
@@ -75,7 +83,8 @@ def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[s
         importlib.import_module(plugin)
     registry = get_ports_registry()
     tags = {cls: tag for tag, cls in registry.items()}
-    types = {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
+    types = {name: _own_type(name, cls, builtin=False) for name, cls in NAV2_NODES.items()}
+    types |= {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
     for cls in nodes:
         name = tags.get(cls, cls.__name__)
         types[name] = _own_type(name, cls, builtin=False) if issubclass(cls, Node) else _leaf_type(name, cls)
@@ -84,13 +93,16 @@ def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[s
 
 def _own_type(name: str, cls: type[Node], *, builtin: bool) -> NodeType:
     children: tuple[int, int | None] = (1, 1) if issubclass(cls, DecoratorNode) else getattr(cls, "CHILDREN", (0, 0))
-    return NodeType(name, cls.KIND, cls.PORTS, cls, children, builtin, _first_line(cls))
+    return NodeType(name, cls.KIND, cls.PORTS, cls, children, builtin, _about(cls))
 
 
 def _leaf_type(tag: str, cls: Any) -> NodeType:
     kind = "Condition" if getattr(cls, "KIND", "Action") == "Condition" else "Action"
-    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_first_line(cls))
+    missing = getattr(cls, "MISSING", "")
+    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_about(cls), missing=missing)
 
 
-def _first_line(cls: Any) -> str:
-    return (cls.__dict__.get("__doc__") or "").strip().split("\n")[0]
+def _about(cls: Any) -> str:
+    """The first paragraph of its docstring, on one line."""
+    paragraph = (cls.__dict__.get("__doc__") or "").strip().partition("\n\n")[0]
+    return " ".join(paragraph.split())

@@ -9,12 +9,13 @@ from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
 from pluto_bt.trees.controls.parallel import absolute_count
 from pluto_bt.trees.engine.conditions import CONDITIONS
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource
+from pluto_bt.trees.loader.literal_check import check_literal, check_script
 from pluto_bt.trees.loader.pointers import is_checked_as_literal, key_of
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, NodeType, is_port_name
 from pluto_bt.trees.loader.report import Report
-from pluto_bt.trees.ports import PortModel, range_problem
-from pluto_bt.trees.script import ScriptSyntaxError, parse_script
-from pluto_bt.trees.values import BOOL, INT, SCRIPT, STATUS, STRING, has_trailing_text
+from pluto_bt.trees.loader.version3 import new_attribute, new_name_of_node, new_name_of_port
+from pluto_bt.trees.ports import PortModel
+from pluto_bt.trees.values import BOOL, INT, SCRIPT, STRING
 
 MAX_VALUE = 100_000  # characters of one attribute
 TOOL_ATTRIBUTES = ("_description", "_uid", "_fullpath", "_autoremap")
@@ -79,6 +80,10 @@ class StaticCheck:
             return
         place = element.attributes["ID"].value_place if explicit else element.place
         mend = did_you_mean(name, self._types)
+        if new := new_name_of_node(name):
+            what, expected = f"<{name}> is a name of version 3 of the format", f"<{new}>"
+            self._report.error(place, "old-format", what, expected=expected, found=name, mend=f"version 4 has <{new}>")
+            return
         if name in self._files.trees:
             mend = f'write <SubTree ID="{name}"/>'
         elif name in self._files.node_models:
@@ -97,7 +102,7 @@ class StaticCheck:
             self._report.error(element.children[0].place, "child-count", what, expected="0", found=str(len(element.children)))
         autoremap = element.attributes.get("_autoremap")
         if autoremap is not None:
-            self._check_literal(autoremap, PortModel("_autoremap", kind=BOOL))
+            check_literal(autoremap, PortModel("_autoremap", kind=BOOL), self._report, builtin=True)
         self._check_private(element)
 
     def _check_children(self, element: XmlElement, node_type: NodeType) -> None:
@@ -155,7 +160,8 @@ class StaticCheck:
         port = node_type.ports.get(attribute.name)
         if port is None:
             known = ", ".join(node_type.ports) or "none"
-            mend = did_you_mean(attribute.name, node_type.ports)
+            new = new_name_of_port(node_type.name, attribute.name)
+            mend = f"version 4 has {new}" if new else did_you_mean(attribute.name, node_type.ports)
             what = f'unknown port "{attribute.name}" of <{node_type.name}>'
             self._report.error(attribute.place, "unknown-port", what, expected=f"one of: {known}", found=attribute.name, mend=mend)
         elif port.direction == "out":
@@ -163,44 +169,13 @@ class StaticCheck:
                 what, mend = f'output port "{port.name}" needs an entry', "put it in {braces}"
                 self._report.warning(attribute.value_place, "output-literal", what, expected="{key}", found=attribute.value, mend=mend)
         elif is_checked_as_literal(attribute.value) and not (port.kind in (STRING, SCRIPT) and key_of(port.name, attribute.value)):
-            self._check_literal(attribute, port)
-
-    def _check_literal(self, attribute: XmlAttribute, port: PortModel) -> None:
-        text = attribute.value
-        if port.kind is SCRIPT:
-            self.check_script(attribute)
-            return
-        if key_of(port.name, text) is not None and not port.kind.typed:
-            return
-        try:
-            value = port.kind.parse(text)
-        except ValueError as error:
-            # the names of statuses are only looked at while ticking
-            report = self._report.late if port.kind is STATUS else self._report.error
-            what = f'"{text}" does not fit port "{port.name}"'
-            report(attribute.value_place, "bad-literal", what, expected=port.form, found=text or "nothing", mend=_mend_literal(text, str(error)))
-            return
-        problem = range_problem(port, value)
-        if problem:
-            what = f'"{text}" is outside what port "{port.name}" allows'
-            self._report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=text)
-        elif has_trailing_text(port.kind, text):
-            what = f'"{text}" is read as {value}'
-            self._report.warning(attribute.value_place, "trailing-text", what, expected=port.form, found=text)
+            check_literal(attribute, port, self._report, builtin=node_type.builtin)
 
     def _check_conditions(self, element: XmlElement) -> None:
         for name in CONDITIONS:
             attribute = element.attributes.get(name)
             if attribute is not None:
-                self.check_script(attribute)
-
-    def check_script(self, attribute: XmlAttribute) -> None:
-        """The syntax of a script, with the place of the fault inside it."""
-        try:
-            parse_script(attribute.value)
-        except ScriptSyntaxError as error:
-            what = f"script of {attribute.name}: {error.message}"
-            self._report.error(attribute.place_at(error.position), "script-syntax", what, expected=error.expected, found=error.found)
+                check_script(attribute, self._report)
 
     def _check_private(self, element: XmlElement) -> None:
         """Attributes with `_` in front are ignored, so a misspelt condition would be too."""
@@ -208,7 +183,9 @@ class StaticCheck:
         for name, attribute in element.attributes.items():
             if not is_port_name(name) and name not in (*known, "name", "ID"):
                 what, wanted = f'attribute "{name}" is ignored', "one of: " + ", ".join(known)
-                self._report.warning(attribute.place, "ignored-attribute", what, expected=wanted, mend=did_you_mean(name, known))
+                new = new_attribute(name)
+                mend = f"version 4 has {new}" if new else did_you_mean(name, known)
+                self._report.warning(attribute.place, "ignored-attribute", what, expected=wanted, mend=mend)
 
     def _check_thresholds(self, element: XmlElement) -> None:
         count = len(element.children)
@@ -230,10 +207,3 @@ class StaticCheck:
             what = f"failure_count {limit} has no effect: {most} failures already end it"
             place = element.attributes["failure_count"].value_place
             self._report.warning(place, "unreachable-threshold", what, expected=f"at most {most}", found=str(limit))
-
-
-def _mend_literal(text: str, problem: str) -> str:
-    bare = text.strip()
-    if bare != text and bare:
-        return "remove the blanks"
-    return f"{problem}; {{{text}}} would read an entry" if text.isidentifier() else problem

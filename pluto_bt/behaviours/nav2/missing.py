@@ -1,0 +1,70 @@
+"""Nodes of Nav2 that have no counterpart on our robots yet: known by name, so that a tree with one is told which it is and where."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar, Final
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.ports import Port
+
+# name → (why, inputs, outputs)
+MISSING: Final[dict[str, tuple[str, str, str]]] = {
+    "AssistedTeleop": ("teleoperation", "is_recovery time_allowance server_name server_timeout", "error_code_id error_msg"),
+    "CancelAssistedTeleop": ("teleoperation", "server_name server_timeout", ""),
+    "CancelWait": ("cancelling a Wait from beside it", "server_name server_timeout", ""),
+    "ComputeRoute": (
+        "routes on a graph",
+        "start goal start_id goal_id use_start use_poses server_name server_timeout",
+        "route path planning_time error_code_id error_msg",
+    ),
+    "ComputeAndTrackRoute": (
+        "routes on a graph",
+        "start goal start_id goal_id use_start use_poses server_name server_timeout",
+        "execution_duration execution_time last_node_id next_node_id current_edge_id route path rerouted error_code_id error_msg",
+    ),
+    "CancelComputeAndTrackRoute": ("routes on a graph", "server_name server_timeout", ""),
+    "ExtractRouteNodesAsGoals": ("routes on a graph", "route", "goals"),
+    "FollowObject": (
+        "following a pose of another program; Follow follows what the laser sees",
+        "pose_topic max_duration tracked_frame server_name server_timeout",
+        "total_elapsed_time error_code_id error_msg",
+    ),
+    "CancelFollowObject": ("following a pose of another program", "server_name server_timeout", ""),
+    "DockRobot": (
+        "docking",
+        "use_dock_id dock_id dock_pose dock_type max_staging_time navigate_to_staging_pose server_name server_timeout",
+        "success num_retries error_code_id error_msg",
+    ),
+    "UndockRobot": ("docking", "dock_type max_undocking_time server_name server_timeout", "success error_code_id error_msg"),
+    "ReinitializeGlobalLocalization": ("a localisation that can be spread anew", "service_name server_timeout", ""),
+    "ToggleCollisionMonitor": ("a collision monitor that can be switched off; the stop filter never is", "enable service_name server_timeout", ""),
+    "IsBatteryCharging": ("a charger that tells", "battery_topic", ""),
+}
+CONDITIONS: Final = ("IsBatteryCharging",)
+
+
+class NotThereYet(Leaf):
+    """Cannot be run: a check tells it, and a tick ends with an error."""
+
+    MISSING: ClassVar[str] = ""
+
+    def update(self) -> Status:
+        """Raises."""
+        raise NotImplementedError(f"<{type(self).__name__}> is not there yet: our robots have no {self.MISSING}")
+
+
+def _leaf(name: str, why: str, inputs: str, outputs: str) -> type[NotThereYet]:
+    members: dict[str, Any] = {
+        "MISSING": why,
+        "KIND": "Condition" if name in CONDITIONS else "Action",
+        "INPUT_PORTS": {port: Port(Any, False) for port in inputs.split()},
+        "OUTPUT_PORTS": {port: Port(Any, False) for port in outputs.split()},
+        "__module__": __name__,
+        "__doc__": f"Not there yet: {why}.",
+    }
+    return type(name, (NotThereYet,), members)
+
+
+LEAVES: Final = tuple(_leaf(name, *row) for name, row in MISSING.items())

@@ -1,0 +1,85 @@
+"""WallFollow: along a wall at a constant distance, the laser turned to the wall."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from py_trees.common import Status
+
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
+from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
+from pluto_bt.blackboard.codes import CommandType
+from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.skills.wall_follow import AT_WALL
+
+SIDES: Final = {"left": 1.0, "right": -1.0}
+WRIST_DPS, WRIST_DPS2 = 40.0, 80.0
+PAN_DEG: Final = 45.0  # shows the wall beside the camera, and still what comes from ahead on the other side
+
+
+class WallFollow(MotionLeaf):
+    """Follows the nearest wall so that the camera, held out to the back and the side, keeps `distance_m` from it; SUCCESS after `length_m`.
+
+    Goes round inner and outer corners and past doors and gaps. Fails with `no-wall` if there is none in reach, with `wall-lost` if it goes away.
+    """
+
+    INPUT_PORTS = {
+        "side": Port(str, False, "where the wall is", "left", choices=tuple(SIDES)),
+        "distance_m": Port(float, False, "between camera and wall; 0 = the platform's", 0.0, unit="m", ge=0.0, le=5.0),
+        "length_m": Port(float, False, "how far to drive along the wall; the way to it does not count", math.inf, unit="m", ge=0.0),
+        **MOTION_INPUTS,
+    }
+    OUTPUT_PORTS = dict(MOTION_OUTPUTS)
+
+    def begin(self, robot: Robot) -> Status | None:
+        """Post the command; avoidance does the rest. `force[1..2]` carry distance and side."""
+        devices = robot.platform.devices
+        if devices.laser is None and devices.sonar is None:
+            return self.fail("no-device", "the platform has neither laser nor sonar")
+        self._side = SIDES[self.get_input("side")]
+        self._length_m, self._from_m, self._way_m = float(self.get_input("length_m")), math.inf, 0.0
+        velocity = (self.max_speed_mps(robot), math.radians(robot.platform.limits.max_turn_rate_dps))
+        self.post(robot, CommandType.WALL_FOLLOW, velocity=velocity, force=(0.0, float(self.get_input("distance_m")), self._side))
+        self._point(robot, self._side * math.radians(PAN_DEG))
+        return None
+
+    def follow(self, robot: Robot) -> Status:
+        """Over, in trouble, or on the way."""
+        status = self.chain_status(robot)
+        trouble = self.chain_trouble(robot, status)
+        if trouble is not None:
+            return trouble
+        if status is None:
+            return self.wait("starting")
+        if status.reason == "stuck":
+            return self.fail("stuck", status.text)
+        raw = robot.newest("ATRV2/Drive/Raw")
+        if isinstance(raw, ActuatorState):
+            if self._from_m == math.inf and status.text == AT_WALL:
+                self._from_m = raw.position[0]
+            self._way_m = max(self._way_m, raw.position[0] - self._from_m)
+        if self._way_m >= self._length_m:
+            return self.succeed(f"{self._way_m:.2f} m along the wall")
+        return self.wait(f"{self._way_m:.2f} m along the wall")
+
+    def resume(self, robot: Robot) -> None:
+        """The wrist too."""
+        super().resume(robot)
+        if self._ticket is not None:
+            self._point(robot, self._side * math.radians(PAN_DEG))
+
+    def terminate(self, new_status: Status) -> None:
+        """Stand, and look ahead again."""
+        moved, robot = self._moves, self.robot
+        super().terminate(new_status)
+        if moved and robot is not None:
+            self._point(robot, 0.0)
+
+    def _point(self, robot: Robot, pan_rad: float) -> None:
+        wrist = robot.platform.devices.wrist
+        if wrist is not None:
+            limit_rad = math.radians(wrist.pan_limit_deg)
+            rate, acceleration = math.radians(min(WRIST_DPS, wrist.max_rate_dps)), math.radians(min(WRIST_DPS2, wrist.max_acceleration_dps2))
+            robot.point_wrist(max(-limit_rad, min(limit_rad, pan_rad)), 0.0, rate, acceleration)

@@ -1,0 +1,63 @@
+"""Black boxes as the commands need them: found and read, or refused with a fault."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pluto_bt.source import Faults, Place
+
+if TYPE_CHECKING:
+    from pluto_bt.record.box import Box
+    from pluto_bt.record.mcap_reader import McapFile
+
+
+def need_mcap(asked_by: str, faults: Faults) -> bool:
+    """Whether black boxes can be read here; False and a fault if not."""
+    if find_spec("mcap") is not None:
+        return True
+    faults.error(Place(asked_by), "not-installed", "the library mcap is not installed", expected="mcap", mend="pip install 'pluto_bt[record]'")
+    return False
+
+
+def read_box(name: str) -> Box:
+    """The black box of that name; one that was cut short by a crash is read as far as it goes, with a warning. Raises: InputError."""
+    faults = Faults()
+    if need_mcap(name, faults):
+        from pluto_bt.record.box import open_box
+
+        box = open_box(Path(name), name, faults)
+        if box is not None and not box.file.is_whole:
+            print(f"{name}: the recording was cut short; read as far as it goes (`pluto repair {name}` makes it whole)", file=sys.stderr)
+    faults.raise_errors()
+    assert box is not None  # else there was a fault
+    return box
+
+
+def read_mcap(name: str) -> McapFile:
+    """The MCAP file of that name. Raises: InputError."""
+    faults = Faults()
+    if need_mcap(name, faults):
+        from pluto_bt.record.mcap_reader import open_mcap
+
+        file = open_mcap(Path(name), name, faults)
+    faults.raise_errors()
+    assert file is not None  # else there was a fault
+    return file
+
+
+def read_time(text: str | None, option: str, faults: Faults) -> float | None:
+    """`--at T`: seconds of the run."""
+    if text is None:
+        return None
+    try:
+        time_s = float(text)
+    except ValueError:
+        time_s = -1.0
+    if not 0.0 <= time_s < 1e9:
+        what = f"{option} takes seconds of the run"
+        faults.error(Place(f"{option} {text}"), "bad-value", what, expected="a number, 0 or more", found=text or "nothing")
+        return None
+    return time_s

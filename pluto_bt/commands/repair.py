@@ -1,0 +1,33 @@
+"""`pluto repair FILE`: makes a black box whole that was cut short by a crash."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from pluto_bt.commands.options import Parser
+
+
+def main(argv: list[str]) -> int:
+    """Write what can be read, with an index, so that every MCAP tool opens it."""
+    parser = Parser(prog="pluto repair", description="Make a black box whole that was cut short by a crash.")
+    parser.add_argument("file", metavar="FILE.mcap")
+    parser.add_argument("--output", metavar="FILE.mcap", help="write here instead of in place")
+    args = parser.parse_args(argv)
+    from pluto_bt.commands.boxes import read_mcap
+    from pluto_bt.record.repair import repair
+
+    file = read_mcap(args.file)
+    to = Path(args.output or args.file)
+    for _ in file.lines():
+        pass  # to learn whether it is whole
+    if file.is_whole and args.output is None:
+        print(f"{args.file} is whole already")
+        return 0
+    try:
+        saved = repair(file, to)
+    except OSError as error:
+        print(f"pluto repair: cannot write {to}: {error.strerror or error}", file=sys.stderr)
+        return 2
+    print(f"{to}: {saved} messages saved")
+    return 0

@@ -1,0 +1,15 @@
+"""The parameters of the black box."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import msgspec
+from msgspec import Meta
+
+
+class RecordParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """The table `[record]` of a platform file."""
+
+    limit_mb: Annotated[float, Meta(ge=1.0)] = 256.0
+    thinned_period_s: Annotated[float, Meta(ge=0.0)] = 1.0

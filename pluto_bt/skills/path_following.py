@@ -1,0 +1,108 @@
+"""Following a path by points ahead on it: as far ahead as the straight way there stays near enough to the path for the room it has."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.plan_parameters import PlanParameters
+
+NEAREST_M = 0.6  # the point ahead is never nearer than this, so that the robot does not slow down before it
+SEARCH_M = 3.0  # the robot is looked for so far along the path from where it was,
+BACK_M = 0.3  # and not beyond where the path leads away from it by so much: it may come back by the same way
+CUT_SHARE, MOST_CUT_M, LEAST_CUT_M = 0.5, 0.6, 0.08  # of the spare room beside the path, corners may be cut
+SHARES = (1.0, 0.8, 0.6, 0.45, 0.3)  # of the longest look ahead, that are tried
+CAME_ON_M = 0.3  # so much of the path is headway
+
+
+class PathFollowing:
+    """One path (n, 2) in metres. `place` is the index of the point nearest to the robot, which never goes back."""
+
+    def __init__(self, points: Array, rooms_m: Callable[[Array], Array] | None, least_m: float, parameters: PlanParameters) -> None:
+        """`rooms_m` tells how far points of the path are from what stands, if anybody knows; `least_m` of it the robot itself needs."""
+        self._points, self._parameters = points, parameters
+        self._at_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+        spare = np.full(len(points), 0.3) if rooms_m is None else rooms_m(points) - least_m
+        self._cut_m = np.clip(CUT_SHARE * spare, LEAST_CUT_M, MOST_CUT_M)
+
+    def begin(self, robot: Planar, now_s: float) -> None:
+        """Go on from where the robot is."""
+        away_m = np.hypot(self._points[:, 0] - robot[0], self._points[:, 1] - robot[1])
+        first = int(np.flatnonzero(away_m <= away_m.min() + BACK_M)[0])
+        self.place = first + first_nearest(away_m[first:])
+        self._best_m, self._best_s = float(self._at_m[self.place]), now_s
+
+    def wait(self, now_s: float) -> None:
+        """Time in which the robot had to stand for another reason does not count as being stuck."""
+        self._best_s = now_s
+
+    def step(self, robot: Planar, now_s: float) -> tuple[float, float]:
+        """The point of the path to steer to."""
+        self._advance(robot, now_s)
+        return self._ahead(robot)
+
+    @property
+    def end(self) -> tuple[float, float]:
+        """The last point."""
+        return float(self._points[-1, 0]), float(self._points[-1, 1])
+
+    @property
+    def left_m(self) -> float:
+        """What is left of the path."""
+        return float(self._at_m[-1] - self._at_m[self.place])
+
+    def stuck_s(self, now_s: float) -> float:
+        """How long there has been no headway."""
+        return now_s - self._best_s
+
+    def stretch(self, length_m: float) -> Array:
+        """The next points (k, 2) of the path."""
+        last = int(np.searchsorted(self._at_m, self._at_m[self.place] + length_m, side="right"))
+        return self._points[self.place : last]
+
+    def off_m(self, robot: Planar) -> float:
+        """How far the robot is from the path: positive on its left."""
+        at = min(self.place, len(self._points) - 2) if len(self._points) > 1 else 0
+        a = self._points[at]
+        heading_rad = self.heading_rad()
+        return float(math.cos(heading_rad) * (robot[1] - a[1]) - math.sin(heading_rad) * (robot[0] - a[0]))
+
+    def heading_rad(self) -> float:
+        """Where the path leads here."""
+        if len(self._points) < 2:
+            return 0.0
+        at = min(self.place, len(self._points) - 2)
+        step = self._points[at + 1] - self._points[at]
+        return math.atan2(step[1], step[0])
+
+    def _advance(self, robot: Planar, now_s: float) -> None:
+        stretch = self.stretch(SEARCH_M)
+        self.place += first_nearest(np.hypot(stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]))
+        come_m = float(self._at_m[self.place])
+        if come_m > self._best_m + CAME_ON_M:
+            self._best_m, self._best_s = come_m, now_s
+
+    def _ahead(self, robot: Planar) -> tuple[float, float]:
+        for share in SHARES:
+            stretch = self.stretch(max(NEAREST_M, share * self._parameters.ahead_m))
+            last = stretch[-1]
+            if self._is_near(robot, stretch, last):
+                break
+        return float(last[0]), float(last[1])
+
+    def _is_near(self, robot: Planar, stretch: Array, last: Array) -> bool:
+        """True if the straight way to `last` leaves no point between farther aside than its room allows."""
+        dx, dy = last[0] - robot[0], last[1] - robot[1]
+        x, y = stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]
+        share = np.clip((dx * x + dy * y) / max(dx * dx + dy * dy, 1e-12), 0.0, 1.0)  # of the way there, where it is nearest to each point
+        aside = np.hypot(x - share * dx, y - share * dy)
+        return bool((aside <= self._cut_m[self.place : self.place + len(stretch)]).all())
+
+
+def first_nearest(away_m: Array) -> int:
+    """Where a row of distances is least, before it has grown again by `BACK_M`."""
+    grown = np.flatnonzero(away_m > np.minimum.accumulate(away_m) + BACK_M)
+    return int(np.argmin(away_m[: grown[0]] if len(grown) else away_m))

@@ -1,0 +1,87 @@
+"""Laser protection: how much of a motion is allowed before what the laser sees, and why not all of it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pluto_bt.blackboard.codes import Avoidance, LinkStatus
+from pluto_bt.skills import reasons
+from pluto_bt.skills.limits import STILL, Limits, Twist
+from pluto_bt.skills.outline import Array, Outline, Planar
+from pluto_bt.skills.sight import Sight
+from pluto_bt.skills.sonar import where_word
+from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
+from pluto_bt.skills.verdict import ALL_WELL, Verdict
+
+LEAST_MPS, LEAST_RADPS = 0.01, 0.004  # slower than both is wanting to stand
+AWAIT_S = 0.6  # who would walk into the robot within so long after it could have stopped is awaited standing
+
+
+class Protection:
+    """Brakes for one robot. It never steers."""
+
+    def __init__(self, sight: Sight, outline: Outline, limits: Limits, latency_s: float) -> None:
+        self._sight, self._outline, self._limits, self._latency_s = sight, outline, limits, latency_s
+
+    def laser_share(self, now_s: float, dead: Planar | None, now: Twist, avoidance: Avoidance, twist: Twist) -> tuple[float, Verdict]:
+        """How much of a passed-down twist the laser allows, and why not all.
+
+        Args:
+            dead: the robot in dead reckoning, None if that is not known.
+            now: the twist in force.
+        """
+        if not avoidance & Avoidance.LASER or self._sight.laser is None:
+            return 1.0, ALL_WELL
+        fault = self._sight.laser_fault(now_s)
+        if fault.code is LinkStatus.LASER_FATAL or (fault != ALL_WELL and twist != STILL):
+            return 0.0, fault
+        if twist == STILL:
+            return 1.0, ALL_WELL
+        if dead is None:
+            return 0.0, Verdict(LinkStatus.LASER_SLOW_STOP, reasons.NO_POSE, "without dead reckoning it is not known where the obstacles are now")
+        share, verdict = self.clear_share(self._sight.points(dead, True, False, now_s), twist, now)
+        blind_mps = self._sight.parameters.blind_speed_mps
+        if twist[0] < -blind_mps and not self._sight.sees_behind(bool(avoidance & Avoidance.SONAR)) and share > blind_mps / -twist[0]:
+            share, verdict = blind_mps / -twist[0], Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, "no sensor sees behind: backing slowly")
+        return share, verdict
+
+    def clear_share(self, points: Array, wanted: Twist, now: Twist) -> tuple[float, Verdict]:
+        """The share of the wanted twist that can be braked before any point; the twist in force counts too, since it still has to be braked."""
+        if len(points) and abs(wanted[0]) < LEAST_MPS and abs(wanted[1]) < LEAST_RADPS:  # who steers sees no free way and stands by himself
+            return 1.0, self._seen(points, int(np.argmin(np.hypot(points[:, 0], points[:, 1]))))
+        share, verdict = 1.0, ALL_WELL
+        for twist in (wanted, now) if _differs(wanted, now) else (wanted,):
+            if twist == STILL:
+                continue
+            span_s = horizon_s(twist, self._limits, self._latency_s)
+            free_s, which = first_contact(points, self._outline.planes, twist[0], twist[1], span_s)
+            allowed = allowed_share(free_s, twist, self._limits, self._latency_s)
+            if allowed < share:
+                share, verdict = allowed, self._seen(points, which)
+        if share > 0.0 and wanted != STILL and points[:, 3:].any():
+            which = self._who_is_inside(points)
+            if which >= 0:
+                return 0.0, self._seen(points, which)
+            within_s = AWAIT_S + horizon_s(now, self._limits, self._latency_s)
+            _, which = first_contact(points, self._outline.planes, 0.0, 0.0, within_s)
+            if which >= 0:
+                return 0.0, self._seen(points, which)
+        return share, verdict
+
+    def _who_is_inside(self, points: Array) -> int:
+        """A point of somebody who walked into the standing robot, -1 if there is none: he is let out before it moves on."""
+        walking = np.flatnonzero(points[:, 3:].any(axis=1))
+        planes = self._outline.planes
+        inside = (points[walking, :2] @ planes[:, :2].T < planes[:, 2]).all(axis=1)
+        return int(walking[inside][0]) if inside.any() else -1
+
+    def _seen(self, points: Array, which: int) -> Verdict:
+        x_m, y_m = points[which, :2].tolist()
+        text = f"obstacle {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
+        return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, text)
+
+
+def _differs(a: Twist, b: Twist) -> bool:
+    return abs(a[0] - b[0]) > 0.1 or abs(a[1] - b[1]) > 0.15 or not math.isclose(math.copysign(1.0, a[0]), math.copysign(1.0, b[0]))

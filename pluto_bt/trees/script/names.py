@@ -1,0 +1,50 @@
+"""Which entries a script reads and writes, in the order in which it does so; found without running it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Literal, NamedTuple
+
+from pluto_bt.trees.script.parser import Program
+from pluto_bt.trees.script.terms import Assignment, Chain, Choice, Comparison, Name, Term, Unary
+
+How = Literal["read", "write", "change"]
+
+
+class NameUse(NamedTuple):
+    """One use of a name. `change` is an assignment that needs an entry which is there already (`=`, `+=`, …)."""
+
+    name: str
+    position: int
+    how: How
+
+
+@lru_cache(maxsize=4096)
+def names_used(program: Program) -> tuple[NameUse, ...]:
+    """All uses; both branches of `?:` count as run."""
+    return tuple(use for statement in program.statements for use in _uses(statement))
+
+
+def _uses(term: Term) -> Iterator[NameUse]:
+    if isinstance(term, Name):
+        yield NameUse(term.name, term.position, "read")
+    elif isinstance(term, Unary):
+        yield from _uses(term.operand)
+    elif isinstance(term, (Chain, Comparison)):
+        yield from _uses(term.first)
+        for _, right in term.rest:
+            yield from _uses(right)
+    elif isinstance(term, Choice):
+        for part in (term.condition, term.then, term.otherwise):
+            yield from _uses(part)
+    elif isinstance(term, Assignment):
+        yield from _assigned(term)
+
+
+def _assigned(term: Assignment) -> Iterator[NameUse]:
+    name, position = term.target.name, term.target.position
+    if term.sign not in (":=", "="):
+        yield NameUse(name, position, "read")
+    yield from _uses(term.right)
+    yield NameUse(name, position, "write" if term.sign == ":=" else "change")
