@@ -58,7 +58,7 @@ def test_who_left_the_view_may_be_anywhere_his_legs_can_take_him_and_is_forgotte
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 14)
     near, far = watch.rows(now_s), watch.rows(now_s + 5.0)
     assert near[0, 6] == far[0, 6] == 0.0
-    assert far[0, 4] - near[0, 4] == pytest.approx(5.0 * 1.45, abs=0.8), "a metre a second and a little more"
+    assert 4.0 < far[0, 4] - near[0, 4] < 9.0, "five seconds at about a metre a second"
     assert len(watch.rows(now_s + 31.0)) == 0
 
 
