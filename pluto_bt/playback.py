@@ -107,7 +107,8 @@ class Playback:
         """Every difference, tick by tick; the first one is the one that counts."""
         for number in range(len(self._box)):
             tick = self._box.tick(number)
-            yield from self._step(tick)
+            if not tick.is_end:
+                yield from self._step(tick)
             if self._feed.is_at_its_end:
                 return
             self.ticks += 1

@@ -113,7 +113,7 @@ class Runner:
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
             trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
-            faults=[fault.as_json() for fault in self.inputs.warnings],
+            faults=[fault.as_json() for fault in self.inputs.warnings], contracts=[kept.as_json() for kept in system.executive.contracts],
         )  # fmt: skip
 
     def _outcome(self) -> tuple[str, str, str]:

@@ -126,9 +126,9 @@ def _is_step(path: str) -> bool:
 
 
 def outcomes(count: int | None = None, seed: int = 0) -> Iterator[Outcome]:
-    """A kill after every tick of the mission, or after `count` of them drawn with a seed."""
+    """A kill after every tick of the mission but the last, or after `count` of them drawn with a seed."""
     kills = Kills()
-    ticks = np.arange(1, kills.ticks + 1)
+    ticks = np.arange(1, kills.ticks)  # after the last one there is nothing to resume
     chosen = ticks if count is None else np.sort(np.random.default_rng(seed).choice(ticks, size=min(count, len(ticks)), replace=False))
     for number, tick in enumerate(chosen.tolist()):
         yield kills.at(tick, try_hold=number % HELD_EVERY == 0)

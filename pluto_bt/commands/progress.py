@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import shutil
-from typing import IO
+from typing import IO, Any
 
 from pluto_bt.blackboard.messages import Event
 from pluto_bt.result import RunResult
@@ -106,8 +106,17 @@ def summary(result: RunResult) -> str:
     if result.final_pose is not None:
         lines.append(f"  ended at   {_pose(result.final_pose)}" + (f", believed {_pose(result.estimated_pose)}" if result.estimated_pose else ""))
     lines += [f"  contact    {_contact(contact)}" for contact in result.contacts[:5]]
+    lines += [f"  contract   {one['name']}: {_kept(one)}" for one in result.contracts]
     lines.append(f"  trace      {result.trace_sha256[:16]}…")
     return "\n".join(lines)
+
+
+def _kept(told: dict[str, Any]) -> str:
+    """How a contract has stood, in a few words."""
+    if not told["breaches"]:
+        return f"{told['verdict']}{': ' + told['problem'] if told['problem'] else ''}"
+    first, count = told["breaches"][0], len(told["breaches"])
+    return f"broken at {first['broken_s']:.1f} s" + (f" and {count - 1} times more" if count > 1 else "")
 
 
 def _metres(value: float | None) -> str:

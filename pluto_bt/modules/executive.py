@@ -9,10 +9,12 @@ import msgspec
 
 from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, Pose, TreeState
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.contract_guardian import ContractGuardian
 from pluto_bt.modules.job_runner import JobRunner
 from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.tick_log import TickLog
 from pluto_bt.runtime.supervision import Part
+from pluto_bt.trees.contracts import Kept
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
 
@@ -41,6 +43,7 @@ class Executive:
         self._steps = 0
         self._own_clock = context.own_clock
         self.keeper: JournalKeeper | None = None
+        self._guardian = ContractGuardian(context, self.core)
         self._log = TickLog(context, self.core, context.black_box) if context.black_box is not None else None
 
     def start(self, now_s: float) -> None:
@@ -66,6 +69,7 @@ class Executive:
             self._show_trees(ticked, lines, now_s)
             if self.on_ticked is not None:
                 self.on_ticked(ticked)
+            self._guardian.look(ticked, now_s)
         if self.keeper is not None:
             self._keep(self.keeper, ticked, now_s)
         if self._log is not None:
@@ -96,10 +100,15 @@ class Executive:
             keeper.end()
             self.keeper = None
 
+    @property
+    def contracts(self) -> list[Kept]:
+        """How the contracts of the mission have stood."""
+        return self._guardian.kept
+
     def note_end(self, now_s: float) -> None:
         """The run is over: note how things stand, also if the executive itself hangs."""
         if self._log is not None:
-            self._log.step(now_s, [], [])
+            self._log.step(now_s, [], [], is_end=True)
 
     def _show_trees(self, ticked: list[Activity], lines: list[str], now_s: float) -> None:
         """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""

@@ -94,7 +94,7 @@ class _Eye:
             return
         if not self.watch.look(scan, senses.laser) or senses.laser is None:
             return
-        if space.add_scan(scan, senses.laser, self._z_m, senses.tilt_rad):
+        if space.add_scan(scan, senses.laser, self._z_m, senses.tilt_rad, walkers.bodies(scan.stamp_s)):
             walkers.take_scan(scan, senses.laser, space.believed)
 
 

@@ -19,6 +19,7 @@ NEVER = -1e18
 BEAM_SLACK_M = 0.05  # a beam that ends so little beyond a point does not prove that the point is gone: three sigma of an LMS200 and more
 CONE_SLACK_M = 0.12  # the same for an echo
 FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
+TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
@@ -96,14 +97,18 @@ def hear_cones(
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
-    the part of the arc that no other cone of this round clears counts as an obstacle. What appears where it was free a moment ago came by
-    itself and may go by itself: it counts as so much older, `fleeting_s`, from the start.
+    the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
+    noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
+    where it was free a moment ago came by itself and may go by itself: it counts as so much older, `fleeting_s`, from the start.
     """
     opening = math.tan(half_cone_rad)
     for clears in (1, 0):
         for k in range(cones.shape[0]):
             x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
             if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
+                continue
+            if clears == 0 and echo_m <= cones[k, 5]:
+                cones[k, 3] = TOUCHING_M
                 continue
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M

@@ -192,9 +192,9 @@ def _plain_end(view: View) -> Cause | None:
     """What ended the mission or the run, where nothing below says more."""
     state, reason, text = view.ended
     word, words = view.trail.situation.ended
-    if reason:
-        return _cause("node", reason, text or state, _since(view, "mission"))
-    return _cause("run", word, words, _since(view, "ended")) if word else None
+    if word:
+        return _cause("run", word, words, _since(view, "ended"))
+    return _cause("node", reason, text or state, _since(view, "mission")) if reason else None
 
 
 # -------------------------------------------------------------------- the way up

@@ -113,10 +113,10 @@ def test_one_who_is_hidden_for_three_seconds_is_found_again() -> None:
     assert state is Search.SEEN and distances[-1] < 1.8
 
 
-def test_one_who_does_not_come_back_is_given_up_after_six_seconds() -> None:
+def test_one_who_does_not_come_back_is_given_up_after_eight_seconds() -> None:
     _, distances, state = play({"guide": lambda t: None if t >= 8.0 else straight(t)}, 30.0)
     assert state is Search.LOST
-    assert 0.1 * len(distances) == pytest.approx(8.0 + 6.0, abs=0.4)
+    assert 0.1 * len(distances) == pytest.approx(8.0 + 8.0, abs=0.4)
 
 
 def test_where_nothing_moves_there_is_nobody_after_ten_seconds() -> None:

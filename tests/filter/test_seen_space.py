@@ -46,7 +46,7 @@ def wall_ahead(distance_m: float) -> np.ndarray:
 
 def test_beams_make_free_what_they_run_through_and_occupied_where_they_end() -> None:
     one = space()
-    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     assert one.seen[cell(one, 1.0, 0.3)] == 1.0
     assert one.seen[cell(one, 1.7, 0.0)] == NEVER, "behind the wall nothing is known"
     assert one.seen[cell(one, -0.5, 0.0)] == NEVER
@@ -55,8 +55,8 @@ def test_beams_make_free_what_they_run_through_and_occupied_where_they_end() -> 
 
 def test_what_goes_away_is_forgotten_when_a_beam_runs_through_its_place() -> None:
     one = space()
-    one.add_scan(scan(wall_ahead(1.0)), (0.0, 0.0, 0.0), 0.6, 0.0)
-    one.add_scan(scan(wall_ahead(1.8), 2.0), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.0)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
+    one.add_scan(scan(wall_ahead(1.8), 2.0), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     one.stand((0.0, 0.0, 0.0), 0.0, 2.0, 0.0, REACH_M)
     assert one.points[: one.count, 0].min() > 1.7
 
@@ -65,12 +65,12 @@ def test_one_lost_beam_opens_no_hole_and_one_short_beam_is_believed_the_second_t
     one, ranges = space(), wall_ahead(1.52)
     ranges[180] = 80.0
     ranges[100] = 0.7
-    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0)
-    one.add_scan(scan(ranges, 2.0), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
+    one.add_scan(scan(ranges, 2.0), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     at = (0.7 * math.cos(math.radians(40.0)), -0.7 * math.sin(math.radians(40.0)))
     assert one.stamps[(LEVEL, *cell(one, 1.52, 0.02))] > NEVER
     assert one.stamps[(LEVEL, *cell(one, *at))] == NEVER
-    one.add_scan(scan(ranges, 3.0), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(ranges, 3.0), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     assert one.stamps[(LEVEL, *cell(one, *at))] == 3.0
 
 
@@ -89,7 +89,7 @@ def test_a_scan_that_looks_down_finds_low_things_but_believes_no_lone_short_beam
 @settings(max_examples=30, deadline=None)
 def test_rolling_along_keeps_what_is_still_near(x: float, y: float) -> None:
     one = space()
-    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     one.roll((x, y, 0.0))
     row, column = cell(one, 1.0, 0.3)
     if 0 <= row < len(one.seen) and 0 <= column < len(one.seen):
@@ -121,7 +121,7 @@ def test_an_echo_that_the_laser_does_not_explain_is_an_obstacle_and_is_forgotten
 def test_an_echo_of_what_the_laser_sees_adds_nothing() -> None:
     one, ranges = space(), np.full(16, 5.0)
     ranges[3] = ranges[4] = 1.0
-    one.add_scan(scan(wall_ahead(1.166)), (0.0, 0.0, 0.0), 0.4, 0.0)
+    one.add_scan(scan(wall_ahead(1.166)), (0.0, 0.0, 0.0), 0.4, 0.0, NOBODY)
     hear(one, ranges)
     one.stand((0.0, 0.0, 0.0), 0.0, 8.0, 0.0, REACH_M)
     assert not (one.points[: one.count, 2] == LOW).any()
@@ -201,13 +201,13 @@ def test_into_what_was_never_seen_only_creeping(name: str, now: tuple[float, flo
 @pytest.mark.parametrize(
     ("name", "told", "walker", "fresh_since_s", "code"),
     [
-        ("in view, he comes towards the front", (0.5, 0.0), Walker(1.3, 0.0, -1.0, 0.0, 0.0, -0.3), 0.0, WALKER),
-        ("in view, he goes away", (0.5, 0.0), Walker(1.5, 0.0, 1.0, 0.0, 0.0, -0.3), 0.0, CLEAR),
-        ("in view, he is too far to get here", (0.5, 0.0), Walker(4.0, 0.0, -1.0, 0.0, 0.0, -0.3), 0.0, CLEAR),
-        ("creeping is no collision", (0.04, 0.0), Walker(1.0, 0.0, -1.0, 0.0, 0.0, -0.3), 0.0, CLEAR),
-        ("out of view, and the ground was just seen to be free", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0), 0.0, CLEAR),
-        ("out of view, where nobody looks: the tail would swing out", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0), 1.0, WALKER),
-        ("out of view, but too far to have come", (0.0, 0.5), Walker(-1.0, -6.5, 0.0, 1.0, 0.0, -3.0), 1.0, CLEAR),
+        ("in view, he comes towards the front", (0.5, 0.0), Walker(1.3, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
+        ("in view, he goes away", (0.5, 0.0), Walker(1.5, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("in view, he is too far to get here", (0.5, 0.0), Walker(4.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("creeping is no collision", (0.04, 0.0), Walker(1.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("out of view, and the ground was just seen to be free", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 0.0, CLEAR),
+        ("out of view, where nobody looks: the tail would swing out", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 1.0, WALKER),
+        ("out of view, but too far to have come", (0.0, 0.5), Walker(-1.0, -6.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 1.0, CLEAR),
     ],
 )  # fmt: skip
 def test_where_somebody_walks_only_creeping(name: str, told: tuple[float, float], walker: Walker, fresh_since_s: float, code: int) -> None:

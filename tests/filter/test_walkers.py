@@ -15,7 +15,7 @@ from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.approach import Approach
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.sonar import SonarRing
-from pluto_bt.skills.walkers import IN_VIEW_S, WalkerWatch
+from pluto_bt.skills.walkers import WalkerWatch
 from tests.chain.robots import ATRV2, PIONEER
 
 ANGLES = np.radians(np.arange(361) / 2.0 - 90.0)
@@ -54,13 +54,26 @@ def test_a_walker_is_found_with_his_place_and_pace(velocity: tuple[float, float]
 
 
 def test_who_left_the_view_may_be_anywhere_his_legs_can_take_him_and_is_forgotten_after_a_while() -> None:
-    walk = [(0.8, 2.5 - 0.2 * k) for k in range(7)]
-    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 7)
-    near, far = watch.rows(now_s + IN_VIEW_S + 0.1), watch.rows(now_s + 5.0)
+    walk = [(0.8, 2.5 - 0.2 * k) for k in range(7)] + [(-2.0, 0.0)] * 4
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 11)
+    near, far = watch.rows(now_s), watch.rows(now_s + 5.0)
     assert near[0, 6] == far[0, 6] == 0.0
-    assert 4.0 < far[0, 4] < 10.0, "five seconds at a metre a second and a little more"
-    assert far[0, 4] > near[0, 4]
+    assert far[0, 4] - near[0, 4] == pytest.approx(5.0 * 1.45, abs=0.8), "a metre a second and a little more"
     assert len(watch.rows(now_s + 31.0)) == 0
+
+
+def test_who_stops_in_view_stays_there() -> None:
+    walk = [(4.0 - 0.2 * k, 0.0) for k in range(7)] + [(2.8, 0.0)] * 15
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 22)
+    rows = watch.rows(now_s)
+    assert len(rows) == 1 and rows[0, 4] < 2.0, "three seconds later his disc has not grown"
+
+
+def test_a_laser_that_looks_down_for_a_moment_does_not_lose_him() -> None:
+    walk = [(4.0 - 0.2 * k, 0.0) for k in range(7)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 7)
+    assert watch.rows(now_s + 2.0)[0, 6] == 1.0
+    assert watch.rows(now_s + 2.0)[0, 4] < 2.0
 
 
 @settings(max_examples=15, deadline=None)

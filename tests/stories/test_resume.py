@@ -79,7 +79,7 @@ def test_it_goes_on_from_where_it_was_left(folder: Path) -> None:
 def test_held_it_stays_still_and_the_journal_stays(folder: Path) -> None:
     cut_off(folder, 3.0)
     for _ in range(2):
-        result, runner = run(folder, "hold", max_time_s=None)
+        result, _ = run(folder, "hold", max_time_s=None)
         assert (result.result, result.reason, result.exit_code, result.distance_m) == ("STOPPED", "held", 1, 0.0)
         assert "pluto shell resume" in result.text
     assert run(folder)[0].result == "SUCCESS"
