@@ -35,6 +35,7 @@ class Executive:
         self._pose = board.reader("Localization/Pose")
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
+        self.on_ticked: Callable[[list[Activity]], None] | None = None  # a monitor that looks on
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
         self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
@@ -66,7 +67,8 @@ class Executive:
         lines = [activity.mission.status_line() for activity in ticked]
         if ticked:
             self._show_trees(ticked, lines, now_s)
-        if ticked:
+            if self.on_ticked is not None:
+                self.on_ticked(ticked)
             self._guardian.look(ticked, now_s)
         if self.keeper is not None:
             self._keep(self.keeper, ticked, lines, now_s)
