@@ -7,6 +7,7 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import ClassVar, Final
 
 from py_trees.common import Status
@@ -37,10 +38,12 @@ class MotionLeaf(Leaf):
     Attributes:
         DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
         WAY: how the leaf comes to its port `goal`: "straight", "planned" on the map, "found" on the way; "stays" if it stays where it is; "" else.
+        PATIENCE_S: seconds for which it lets the chain wait, where they differ from `WAITING`.
     """
 
     DRIVES: ClassVar = True
     WAY: ClassVar = ""
+    PATIENCE_S: ClassVar[Mapping[str, float]] = {}
 
     def initialise(self) -> None:
         """Forget the last run; the command itself goes out in the first `update`."""
@@ -179,7 +182,7 @@ class MotionLeaf(Leaf):
             return None
         if word != self._word:
             self._word, self._word_since_s = word, self._last_s
-        if word and self._last_s - self._word_since_s >= WAITING[word]:
+        if word and self._last_s - self._word_since_s >= self.PATIENCE_S.get(word, WAITING[word]):
             return self.fail(word, text or sentence(word))
         return None
 

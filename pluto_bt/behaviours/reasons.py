@@ -19,6 +19,7 @@ class Reason(NamedTuple):
 REASONS: Final[dict[str, Reason]] = {
     # ended by the run itself, not by a leaf: max-time, interrupted, and those of supervision
     "base-lost": Reason("the base delivers nothing any more", "check the base, its cable and its power"),
+    "contract": Reason("a contract of the mission was broken", "see which one in the message, and `pluto replay FILE --contracts`"),
     "held": Reason("a run that was cut off waits for an operator", "`pluto shell resume`, or start it with --resume resume"),
     "hung": Reason("a leaf or a module did not return", "look at the name in the message; a leaf's update() must return at once"),
     "interrupted": Reason("the run was ended from the keyboard", "start it again"),

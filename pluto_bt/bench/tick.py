@@ -17,6 +17,7 @@ from pluto_bt.trees import Mission, load_mission
 COLUMNS = 9
 ROWS = (1, 10, 111)  # about 10, 100 and 1000 nodes
 TARGET = 20.0
+STILL_TARGET = 1.0  # per cent
 SUCCESS, FAILURE = Status.SUCCESS, Status.FAILURE  # as the baseline has them: looking a member up costs as much as a call
 
 
@@ -30,18 +31,41 @@ class Positive(BehaviourWithPorts, tag="BenchPositive"):
         return SUCCESS if self.get_input("x") > 0 else FAILURE
 
 
+class SteadyPositive(Positive, tag="BenchSteadyPositive"):
+    """The same, and says so: it depends on its port alone."""
+
+    PORTS_ALONE = True
+
+
 def run() -> list[BenchRow]:
-    """One row a tree size: our cost per visited node, and how many times cheaper that is."""
+    """One row a tree size: our cost per visited node, and how many times cheaper that is. Then a tree whose inputs did not change."""
     baseline = load_baseline("tick_baseline")
-    return [_row(rows, baseline) for rows in ROWS]
+    return [*(_row(rows, baseline) for rows in ROWS), _still_row()]
+
+
+def _still_row() -> BenchRow:
+    """A large tree of leaves that depend on their ports alone: a tick in which nothing was written, as a share of one in which something was."""
+    mission = steady_mission(ROWS[-1])
+    full_us, still_us = best_pair_us(_ours(mission), mission.tick_once)
+    note = f"{still_us:.2f} against {full_us:.0f} µs a tick"
+    return BenchRow("inputs unchanged, share of a full tick", 100.0 * still_us / full_us, "%", f"<= {STILL_TARGET:g}", note)
 
 
 def wide_mission(rows: int) -> Mission:
     """The baseline's tree as a mission: `rows` sequences of nine conditions under one, all reactive (memory=False)."""
-    leaves = "".join(f'<BenchPositive name="leaf {j}" x="{{x}}"/>' for j in range(COLUMNS))
+    return _mission(rows, "BenchPositive")
+
+
+def steady_mission(rows: int) -> Mission:
+    """The same of leaves that depend on their ports alone."""
+    return _mission(rows, "BenchSteadyPositive")
+
+
+def _mission(rows: int, leaf: str) -> Mission:
+    leaves = "".join(f'<{leaf} name="leaf {j}" x="{{x}}"/>' for j in range(COLUMNS))
     body = "".join(f'<ReactiveSequence name="row {i}">{leaves}</ReactiveSequence>' for i in range(rows))
     text = f'<root BTCPP_format="4"><BehaviorTree ID="Wide"><ReactiveSequence>{body}</ReactiveSequence></BehaviorTree></root>'
-    return load_mission(text, nodes=[Positive], blackboard={"x": 1})
+    return load_mission(text, nodes=[Positive, SteadyPositive], blackboard={"x": 1})
 
 
 def _row(rows: int, baseline: Any) -> BenchRow:

@@ -22,6 +22,7 @@ BENCHES = {
     "startup": "`pluto --help` and the first tick of a mission",
     "trips": "the car's trip2, 100 loops on 40 seeds",
     "jbot": "1000 feet out and back between trees: where the robot believes to be",
+    "replay": "100 recorded runs executed again, in lockstep and in threads; what recording costs",
     "resume": "kill -9 at every tick of a mission, then go on",
     "memory": "memory of an hour's simulated run",
 }

@@ -7,12 +7,10 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-Limit = Annotated[float, Meta(ge=0.0)]
-
 
 class ResumeParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The table `[resume]` of a platform file: how old a journal may be, and how far the robot may be from where it was left."""
+    """The table `[resume]` of a platform file."""
 
-    max_age_s: Limit = 600.0
-    max_distance_m: Limit = 1.0
-    max_turn_deg: Limit = 30.0
+    max_age_s: Annotated[float, Meta(ge=0.0, description="so old a journal may be for the mission to go on")] = 600.0
+    max_distance_m: Annotated[float, Meta(ge=0.0, description="so far the robot may be from where it was left")] = 1.0
+    max_turn_deg: Annotated[float, Meta(ge=0.0, description="so far it may have been turned meanwhile")] = 30.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from collections import deque
 from collections.abc import Sequence
+from itertools import zip_longest
 from typing import NamedTuple
 
 from pluto_bt.blackboard.messages import MissionState, NodeState, TreeState
@@ -82,6 +83,6 @@ def _leaves(nodes: Sequence[NodeState]) -> list[NodeAtWork]:
     """The leaves that run."""
     return [
         NodeAtWork(row.path, row.kind, row.status, row.feedback, row.since_s)
-        for row, after in zip(nodes, [*nodes[1:], None], strict=True)
+        for row, after in zip_longest(nodes, nodes[1:])
         if row.status == "RUNNING" and (after is None or after.depth <= row.depth)
     ]

@@ -100,8 +100,7 @@ class Avoid:
         """Look, decide, and give the command for drive if it changed."""
         dt_s, self._last_s = now_s - self._last_s, now_s
         if senses.dead is not None:
-            with_laser = self._kind is None or bool(self._kind[0] & Avoidance.LASER)
-            self.sight.look(senses.view, senses.sonar, senses.dead, with_laser, now_s)
+            self.sight.look(senses.view, senses.sonar, senses.dead, self._asks_laser, now_s)
         if self.command is None or self.verdict.reason == reasons.STOPPED:
             return None
         if self._kind is None:
@@ -114,7 +113,7 @@ class Avoid:
         return self._pass_down(now_s, senses, avoidance, kind)
 
     def status(self, now_s: float, drive: FVectorState | None, drive_has_it: bool) -> FVectorState:
-        """`avoidance/status`: own words first, else drive's once it has accepted our last command; a stopped drive shows always."""
+        """`avoidance/status`: own words first, else drive's once it has accepted our last command; a stopped drive and a rebooting laser always."""
         data = drive.data if drive is not None else STILL
         verdict = self.verdict
         code, reason, text = int(verdict.code), verdict.reason, verdict.text
@@ -122,7 +121,15 @@ class Avoid:
             code = drive.element[0]
             if not reason:
                 reason, text = drive.reason, drive.text or text
+        laser = self.sight.laser_fault(now_s) if not code and self._asks_laser else ALL_WELL
+        if laser.code is LinkStatus.LASER_FATAL:
+            code, reason, text = int(laser.code), reason or laser.reason, text or laser.text
         return FVectorState(now_s, data, (code, int(self.goto_status)), reason, text)
+
+    @property
+    def _asks_laser(self) -> bool:
+        """Whether the laser counts: A asks for it, or nothing is commanded."""
+        return self._kind is None or bool(self._kind[0] & Avoidance.LASER)
 
     # -------------------------------------------------------------- what goes down
 
@@ -174,6 +181,7 @@ class Avoid:
             self.verdict = Verdict(reason=reason, text=way.text)
             return self._post(0, 0.0, STILL, now_s)
         share, command = self._steered(now_s, senses, avoidance, points, way.speed_mps, way.turn_rad, self._goto.limits)
+        self._goto.note_share(now_s, share)
         if share == 0.0 and way.speed_mps < 0.0:
             self._goto.give_up_backing()
         return command

@@ -1,7 +1,7 @@
 """What a mission remembers, as plain JSON: statuses and memory of its nodes, and its blackboard. Taken after a tick, given back after a crash.
 
-A leaf that was RUNNING begins again when it is given back; everything above it goes on where it stood. What runs on a timer (Timeout, Delay,
-Sleep) begins its time anew: the time of the crash belongs to nobody.
+A leaf that was RUNNING begins again when it is given back; everything above it goes on where it stood. What is paced by time or way (Timeout,
+Delay, Sleep, Nav2's RateController and its like) begins its pace anew: the time of the crash belongs to nobody.
 """
 
 from __future__ import annotations
@@ -13,16 +13,18 @@ from typing import Any, Final
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.decorators.updated import UpdateWatch
 from pluto_bt.trees.engine.node import Node
-from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
 from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.nav2.paced import Paced
 from pluto_bt.trees.scopes import EMPTY, Entry, Scope
-from pluto_bt.trees.tracked import LETTERS, Tracked
+from pluto_bt.trees.tracked import Tracked
 from pluto_bt.trees.values import PortProblem, kind_of_value
 
 State = dict[str, Any]  # {"nodes": {number: [letter, memory]}, "board": {scope number: {key: [seq, is typed, value]}}}
 OWN: Final = frozenset(vars(Node()))  # what every node has; the rest is memory, or was set by the loader
-NOT_MEMORY: Final = frozenset({"child", "enums", "scope", "script", "source_key", "tree_id", "timer", "started", "expired", "waiting"})
-STATUS_OF_LETTER: Final[dict[str, Result]] = {letter: status for status, letter in LETTERS.items()}
+NOT_MEMORY: Final = frozenset({"child", "enums", "scope", "script", "source_key", "tree_id", "timer", "started", "expired", "waiting", "resumes"})
+LETTERS: Final[dict[Result, str]] = {IDLE: "I", RUNNING: "R", SUCCESS: "S", FAILURE: "F", SKIPPED: "K"}
+STATUS_OF_LETTER: Final = {letter: status for status, letter in LETTERS.items()}
 LEFT_OUT: Final = object()
 
 
@@ -75,11 +77,11 @@ def scopes_of(tracked: list[Tracked]) -> list[Scope]:
 
 def _memory(node: Any) -> dict[str, Any]:
     """What a control or decorator remembers between ticks; leaves begin again, so they have none."""
-    if not isinstance(node, Node):
+    if not isinstance(node, Node) or isinstance(node, Paced):
         return {}
     found: dict[str, Any] = {}
     for name, value in vars(node).items():
-        if name not in OWN and name not in NOT_MEMORY:
+        if name not in OWN and name not in NOT_MEMORY and not name.startswith("_"):
             plain = [value.seen] if isinstance(value, UpdateWatch) else to_json(value)
             if plain is not LEFT_OUT:
                 found[name] = plain
@@ -88,8 +90,8 @@ def _memory(node: Any) -> dict[str, Any]:
 
 def _restore(node: Any, letter: str, memory: dict[str, Any]) -> None:
     status = STATUS_OF_LETTER[letter]
-    is_leaf = not node.children
-    node.status = IDLE if is_leaf and status is RUNNING else status
+    begins_again = not node.children or isinstance(node, Paced)
+    node.status = IDLE if begins_again and status is RUNNING else status
     for name, plain in memory.items():
         value = getattr(node, name, None)
         if isinstance(value, UpdateWatch):
@@ -119,14 +121,15 @@ def _restore_scope(scope: Scope, entries: dict[str, Any], lost: list[str]) -> No
     for key, (seq, is_typed, plain) in entries.items():
         entry = scope.entries.get(key)
         if entry is None:
-            entry = scope.entries[key] = Entry()
+            entry = scope.entries[key] = Entry(scope.board)
             scope.board.changes += 1
         try:
             value = entry.kind.convert(plain["text"]) if isinstance(plain, dict) and "text" in plain and entry.kind is not None else from_json(plain)
         except (PortProblem, ValueError):
             lost.append(key)
             continue
-        entry.value, entry.seq = value, seq
+        entry.put(value)
+        entry.seq = seq
         if is_typed and entry.kind is None:
             entry.kind = kind_of_value(value)
 

@@ -7,7 +7,6 @@ Every assignment counts as a write, even of an equal value: `seq` counts them.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Final, Protocol
 
 from pluto_bt.trees.values import STRING, Kind, PortProblem, kind_of_value
@@ -34,19 +33,21 @@ EMPTY: Final = _Empty()
 
 
 class Entry:
-    """One value with its kind (None: open) and the count of its writes."""
+    """One value with its kind (None: open) and the count of its writes; `board` counts those of all entries."""
 
-    __slots__ = ("kind", "seq", "value")
+    __slots__ = ("board", "kind", "seq", "value")
 
-    def __init__(self, kind: Kind | None = None, value: Any = EMPTY) -> None:
+    def __init__(self, board: Board, kind: Kind | None = None) -> None:
+        self.board = board
         self.kind = kind
-        self.value = value
+        self.value: Any = EMPTY
         self.seq = 0
 
     def put(self, value: Any) -> None:
         """Store without looking at kinds; counts as a write."""
         self.value = value
         self.seq += 1
+        self.board.writes += 1
 
 
 class TopicEntry(Entry):
@@ -85,6 +86,7 @@ class Board:
         self.robot: Any = None
         self.topic_names = frozenset(topics.names()) if topics is not None else frozenset()
         self.changes = 0  # counts entries made and removed, so that readers know when to look again
+        self.writes = 0  # counts all writes, and entries made and removed
         self.root = Scope(self, None, "")
 
 
@@ -124,8 +126,9 @@ class Scope:
         if entry is None:
             entry = self._topic(key) if self.parent is None else None
         if entry is None:
-            entry = self.entries[key] = Entry(kind)
+            entry = self.entries[key] = Entry(self.board, kind)
             self.board.changes += 1
+            self.board.writes += 1
         return entry
 
     def write(self, key: str, value: Any, kind: Kind | None = None) -> None:
@@ -161,6 +164,7 @@ class Scope:
             self.board.root.unset(key[1:])
         elif self.entries.pop(key, None) is not None:
             self.board.changes += 1
+            self.board.writes += 1
 
     def _falls_through(self, key: str) -> bool:
         return self.autoremap and not key.startswith("_")
@@ -184,26 +188,34 @@ def _fitted(key: str, wanted: Kind, kind: Kind | None, value: Any) -> Any:
     raise PortProblem(f"entry {key!r} holds {wanted.name} and cannot take {found}")
 
 
-def reader(scope: Scope, key: str, kind: Kind) -> Callable[[], Any]:
-    """A function that reads the entry `key` as `kind`. It looks the entry up again only after entries were made or removed."""
-    board, wanted, convert = scope.board, kind.python, kind.convert
-    missing = Entry()
-    entry = missing
-    seen = -1
+class EntryReader:
+    """Reads the entry `key` of a scope as a kind. It looks the entry up again only after entries were made or removed.
 
-    def read() -> Any:
-        nonlocal entry, seen
-        if seen != board.changes:
-            entry, seen = scope.find(key) or missing, board.changes
-        value = entry.value
-        if type(value) is wanted:
+    The fields are open to `get_input` of leaves, which spares itself the call as long as nothing has to be looked up or converted.
+    """
+
+    __slots__ = ("board", "convert", "entry", "key", "scope", "seen", "wanted")
+
+    def __init__(self, scope: Scope, key: str, kind: Kind) -> None:
+        self.scope, self.key, self.board = scope, key, scope.board
+        self.wanted, self.convert = kind.python, kind.convert
+        self.entry, self.seen = MISSING, -1
+
+    def read(self) -> Any:
+        """The value. Raises MissingValue, or PortProblem if it does not fit."""
+        if self.seen != self.board.changes:
+            self.entry, self.seen = self.scope.find(self.key) or MISSING, self.board.changes
+        value = self.entry.value
+        if type(value) is self.wanted:
             return value
         if value is EMPTY:
-            raise MissingValue(f"entry {key!r} has no value")
-        return convert(value)
-
-    return read
+            raise MissingValue(f"entry {self.key!r} has no value")
+        return self.convert(value)
 
 
 class MissingValue(PortProblem):
     """An entry that nobody has written."""
+
+
+NO_BOARD: Final = Board()
+MISSING: Final = Entry(NO_BOARD)  # stands for an entry that does not exist

@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from pluto_bt.blackboard.messages import NodeState
-from pluto_bt.trees.engine.status import IDLE, NAME_OF_STATUS, SKIPPED, Result
+from pluto_bt.trees.engine.status import IDLE, SKIPPED, Result, name_of
 from pluto_bt.trees.loader.expand import Plan
 
-LETTERS = {status: "K" if name == "SKIPPED" else name[0] for status, name in NAME_OF_STATUS.items()}
+
+def letter_of(node: Any) -> str:
+    """The stored status of a node as one letter: I R S F."""
+    return "I" if node.status is IDLE else node.status._name_[0]
 
 
 class Tracked:
@@ -24,18 +27,17 @@ class Tracked:
     def status(self, skipped: set[int]) -> str:
         """The status now; SKIPPED for those that were skipped in the last tick."""
         result: Result = SKIPPED if id(self.node) in skipped else self.node.status
-        return NAME_OF_STATUS[result]
+        return name_of(result)
 
     def letter(self, skipped: set[int]) -> str:
         """The status now as one letter."""
-        node = self.node
-        return "K" if id(node) in skipped else LETTERS[node.status]
+        return "K" if id(self.node) in skipped else letter_of(self.node)
 
     def last(self, skipped: set[int]) -> str:
         """What the node told its parent last; IDLE if it was never ticked."""
         node = self.node
         result: Result = SKIPPED if id(node) in skipped else node.status if node.status is not IDLE else node.last
-        return NAME_OF_STATUS[result]
+        return name_of(result)
 
     def state(self, status: str, now_s: float) -> NodeState:
         """The line of this node. `since_s` is when a look first found it in this status."""

@@ -167,20 +167,19 @@ def test_what_was_seen_is_forgotten(stage: Any, run: Any, leaf: str, is_forgotte
 
 
 def test_goal_updated_begins_anew_when_it_is_reset(run: Any) -> None:
-    mission = run("<PipelineSequence><Fallback><GoalUpdated/><AlwaysSuccess/></Fallback><Sleep msec='99999'/></PipelineSequence>", goal="1;1")
-    told = run("<PipelineSequence><ForceSuccess><GoalUpdated name='asked'/></ForceSuccess><Sleep msec='99999'/></PipelineSequence>", goal="1;1")
-    for mission in (mission, told):
+    mission = run("<PipelineSequence><ForceSuccess><GoalUpdated name='asked'/></ForceSuccess><Sleep msec='99999'/></PipelineSequence>", goal="1;1")
+    for goal in ("1;1", "2;2"):
+        mission.blackboard["goal"] = goal
         mission.tick_once()
-        mission.blackboard["goal"] = "2;2"
-        mission.tick_once()
-    assert told.statuses()["asked"] == "FAILURE", "reset in each tick, so it always begins anew"
+        assert mission.statuses()["asked"] == "FAILURE", "its parent resets it in each tick"
 
 
-def test_goal_updated_where_nobody_resets_it(run: Any) -> None:
-    mission = run("<NonblockingSequence><GoalUpdated name='asked'/><Sleep msec='99999'/></NonblockingSequence>", goal="1;1")
-    assert mission.tick_once() == "FAILURE"
-    mission = run("<PipelineSequence><PersistentSequence><Inverter><GoalUpdated name='asked'/></Inverter></PersistentSequence></PipelineSequence>")
-    assert mission.tick_once() == "SUCCESS"
+def test_goal_updated_where_nobody_resets_it(stage: Any, run: Any) -> None:
+    xml = "<PipelineSequence><GoalUpdated _onFailure='f+=1' _onSuccess='s+=1' _post='n+=1'/><Sleep msec='99999'/></PipelineSequence>"
+    mission = run(xml, goal="1;1", f=0, s=0, n=0)
+    assert mission.tick_once() == "FAILURE", "a PipelineSequence fails with its child, and so resets it"
+    mission.blackboard["goal"] = "2;2"
+    assert (mission.tick_once(), mission.blackboard["f"], mission.blackboard["s"]) == ("FAILURE", 2, 0)
 
 
 def test_globally_updated_goal_keeps_its_own_memory(run: Any) -> None:
@@ -239,7 +238,8 @@ def test_conditions(stage: Any, run: Any, xml: str, status: str) -> None:
 
 
 def test_distance_controller(stage: Any, run: Any) -> None:
-    mission = run('<PipelineSequence><DistanceController distance="0.5"><Say text="now"/></DistanceController><Sleep msec="99999"/></PipelineSequence>')
+    paced = '<DistanceController distance="0.5"><Say text="now"/></DistanceController>'
+    mission = run(f'<PipelineSequence>{paced}<Sleep msec="9999"/></PipelineSequence>')
     for x_m in (3.0, 3.4, 3.5, 3.6, 4.0, 3.6):
         stage.robot.is_at(x_m, 2.0)
         assert mission.tick_once() == "RUNNING"
@@ -249,7 +249,7 @@ def test_distance_controller(stage: Any, run: Any) -> None:
 
 
 def test_speed_controller_asks_more_often_when_the_robot_is_fast_or_the_goal_new(stage: Any, run: Any) -> None:
-    xml = '<PipelineSequence><SpeedController min_rate="0.5" max_rate="2"><Say text="now"/></SpeedController><Sleep msec="999999"/></PipelineSequence>'
+    xml = '<PipelineSequence><SpeedController min_rate="0.5" max_rate="2"><Say text="now"/></SpeedController><Sleep msec="99999"/></PipelineSequence>'
     mission = run(xml, goal="1;1")
     told = []
     for speed_mps in (0.0, 0.5):

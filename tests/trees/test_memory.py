@@ -1,4 +1,4 @@
-"""What a mission remembers can be taken after any tick, written as JSON, and given to the same mission loaded anew: it goes on as if nothing had been."""
+"""What a mission remembers can be taken after any tick, kept as JSON, and given to the same mission loaded anew: it goes on as if all was well."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ W = '<Work name="{}" ticks="{}"/>'.format
 A, B, C, F = W("a", 1), W("b", 2), W("c", 1), '<Work name="f" ticks="1" ends="FAILURE"/>'
 TREES = {
     "Sequence": f"<Sequence>{A}{B}{C}</Sequence>",
-    "SequenceWithMemory": f'<ForceSuccess><RetryUntilSuccessful num_attempts="3"><SequenceWithMemory>{A}{F}</SequenceWithMemory></RetryUntilSuccessful>'
-                          "</ForceSuccess>",
+    "SequenceWithMemory": f'<ForceSuccess><RetryUntilSuccessful num_attempts="3"><SequenceWithMemory>{A}{F}</SequenceWithMemory>'
+                          "</RetryUntilSuccessful></ForceSuccess>",
     "AsyncSequence": f"<AsyncSequence>{A}{B}<AlwaysSuccess/>{C}</AsyncSequence>",
     "ReactiveSequence": f"<ReactiveSequence><AlwaysSuccess/>{B}</ReactiveSequence>",
     "Fallback": f"<Fallback>{F}{F}{B}</Fallback>",
@@ -61,13 +61,18 @@ TREES = {
     "LoopInt": f'<Sequence><LoopInt queue="3;5;7" value="{{i}}"><Sequence><Script code="last := i"/>{B}</Sequence></LoopInt>{A}</Sequence>',
     "Precondition": f'<Sequence><Script code="v := 1"/><Precondition if="v == 1">{B}</Precondition></Sequence>',
     "WaitValueUpdate": f'<Sequence><Script code="v := 1"/><WaitValueUpdate entry="{{v}}">{B}</WaitValueUpdate>{A}</Sequence>',
-    "SkipUnlessUpdated": f'<Sequence><Script code="v := 1"/><Repeat num_cycles="2"><ForceSuccess><SkipUnlessUpdated entry="{{v}}">{B}</SkipUnlessUpdated>'
-                         f"</ForceSuccess></Repeat>{A}</Sequence>",
+    "SkipUnlessUpdated": f'<Sequence><Script code="v := 1"/><Repeat num_cycles="2"><ForceSuccess><SkipUnlessUpdated entry="{{v}}">{B}'
+                         f"</SkipUnlessUpdated></ForceSuccess></Repeat>{A}</Sequence>",
     "KeepRunningUntilFailure": f'<ForceSuccess><KeepRunningUntilFailure><Sequence><Script code="k := 1"/>{A}{F}</Sequence></KeepRunningUntilFailure>'
                                "</ForceSuccess>",
     "Delay": f'<Sequence><Delay delay_msec="0">{B}</Delay>{A}</Sequence>',
     "Timeout": f'<Sequence><Timeout msec="90000">{B}</Timeout>{A}</Sequence>',
     "SubTree": f'<Sequence>{A}<SubTree ID="sub" name="one" x="5"/><SubTree ID="sub" name="two" x="{{y}}"/></Sequence>',
+    "RateController": f'<Sequence>{A}<RateController hz="2">{W("d", 4)}</RateController>{B}</Sequence>',
+    "RoundRobin": f'<Repeat num_cycles="3"><ForceSuccess><RoundRobin>{A}{F}{B}</RoundRobin></ForceSuccess></Repeat>',
+    "RecoveryNode": f'<ForceSuccess><RecoveryNode number_of_retries="2">{F}{A}</RecoveryNode></ForceSuccess>',
+    "PersistentSequence": f'<Sequence><Script code="i := 0"/><PersistentSequence current_child_idx="{{i}}">{A}{B}</PersistentSequence></Sequence>',
+    "SingleTrigger": f'<Repeat num_cycles="2"><Sequence><ForceSuccess><SingleTrigger>{A}</SingleTrigger></ForceSuccess>{B}</Sequence></Repeat>',
     "entries": f"<Sequence><Script code=\"n := 3; r := 1.5; t := 'x'\"/>{A}<UnsetBlackboard key=\"n\"/>{B}</Sequence>",
 }  # fmt: skip
 SUB = f'<BehaviorTree ID="sub"><Sequence><Script code="z := x"/>{B}</Sequence></BehaviorTree>'
@@ -75,7 +80,8 @@ SUB = f'<BehaviorTree ID="sub"><Sequence><Script code="z := x"/>{B}</Sequence></
 
 def made(name: str) -> tuple[Mission, VirtualClock]:
     clock = VirtualClock()
-    text = f'<root BTCPP_format="4" main_tree_to_execute="m"><BehaviorTree ID="m">{TREES[name]}</BehaviorTree>{SUB if "SubTree" in name else ""}</root>'
+    more = SUB if name == "SubTree" else ""
+    text = f'<root BTCPP_format="4" main_tree_to_execute="m"><BehaviorTree ID="m">{TREES[name]}</BehaviorTree>{more}</root>'
     return load_mission(text, [Work], clock, blackboard={"y": 7}), clock
 
 

@@ -9,6 +9,7 @@ from pluto_bt.trees.engine.status import FAILURE, SUCCESS
 class Fallback(InOrder):
     """SUCCESS with the first child that succeeds, FAILURE when all have failed; SKIPPED if all were skipped."""
 
+    PASSES_ON = KEEPS_PLACE = True
     GOES_ON, DECIDES = FAILURE, SUCCESS
 
 

@@ -10,6 +10,7 @@ from pluto_bt.trees.engine.status import FAILURE, SUCCESS, Result
 class Sequence(InOrder):
     """SUCCESS when all children succeeded, FAILURE with the first that fails; SKIPPED if all were skipped."""
 
+    PASSES_ON = KEEPS_PLACE = True
     GOES_ON, DECIDES = SUCCESS, FAILURE
 
 

@@ -11,9 +11,10 @@ from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCES
 
 
 class Mapping(DecoratorNode):
-    """Tells its parent `ANSWERS[child's answer]`; RUNNING and SKIPPED pass."""
+    """Answers `FOR_SUCCESS` or `FOR_FAILURE` when its child ends; RUNNING and SKIPPED pass."""
 
-    ANSWERS: ClassVar[dict[Result, Status]] = {}
+    FOR_SUCCESS: ClassVar[Status]
+    FOR_FAILURE: ClassVar[Status]
 
     def step(self) -> Result:
         if self.status is not RUNNING:
@@ -24,7 +25,7 @@ class Mapping(DecoratorNode):
             return self.skip()
         if result is not RUNNING:
             reset(self.child)
-            self.status = self.ANSWERS[result]
+            self.status = self.FOR_SUCCESS if result is SUCCESS else self.FOR_FAILURE
             return self.status
         return result
 
@@ -32,19 +33,22 @@ class Mapping(DecoratorNode):
 class Inverter(Mapping):
     """SUCCESS becomes FAILURE and FAILURE becomes SUCCESS."""
 
-    ANSWERS: ClassVar = {SUCCESS: FAILURE, FAILURE: SUCCESS}
+    PASSES_ON = True
+    FOR_SUCCESS, FOR_FAILURE = FAILURE, SUCCESS
 
 
 class ForceSuccess(Mapping):
     """A child that ends has succeeded."""
 
-    ANSWERS: ClassVar = {SUCCESS: SUCCESS, FAILURE: SUCCESS}
+    PASSES_ON = True
+    FOR_SUCCESS = FOR_FAILURE = SUCCESS
 
 
 class ForceFailure(Mapping):
     """A child that ends has failed."""
 
-    ANSWERS: ClassVar = {SUCCESS: FAILURE, FAILURE: FAILURE}
+    PASSES_ON = True
+    FOR_SUCCESS = FOR_FAILURE = FAILURE
 
 
 class KeepRunningUntilFailure(DecoratorNode):

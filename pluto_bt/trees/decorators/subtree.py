@@ -11,6 +11,7 @@ from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result
 class SubTree(DecoratorNode):
     """Passes its child's answer unchanged. `tree_id` is the ID of the tree it stands for."""
 
+    PASSES_ON = True
     KIND = "SubTree"
 
     def __init__(self, name: str = "", child: Any = None, tree_id: str = "") -> None:

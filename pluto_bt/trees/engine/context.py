@@ -45,6 +45,7 @@ class Context:
     def __init__(self, clock: MissionClock | None = None) -> None:
         self.clock: MissionClock = clock if clock is not None else FrozenClock()
         self.woken = False
+        self.may_remember = True  # False: every node is ticked, also those of which it is known what they would answer
         self.skipped: list[Any] = []
         self.current: Any = None  # the leaf that was begun last: the one to blame while a tick does not come back
         self.late_error: Exception | None = None  # raised by a timer between ticks, told at the next tick

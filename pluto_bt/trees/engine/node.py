@@ -32,6 +32,9 @@ class Node(Behaviour):
 
     KIND: ClassVar[str] = "Action"
     PORTS: ClassVar[dict[str, PortModel]] = {}
+    PORTS_ALONE: ClassVar[bool] = False  # of a leaf: its answer depends on its input ports alone
+    PASSES_ON: ClassVar[bool] = False  # its answer depends on those of its children alone, and on its place among them if it
+    KEEPS_PLACE: ClassVar[bool] = False  # goes on where it was in the last tick
 
     def __init__(self, name: str = "") -> None:
         self.name = name or type(self).__name__
@@ -95,12 +98,14 @@ class Node(Behaviour):
     def tick(self) -> Iterator[Behaviour]:
         """Step, then yield the nodes that were visited, children before parents, as py_trees does."""
         visited: list[Behaviour] = []
+        may_remember, self.context.may_remember = self.context.may_remember, False  # who looks on wants to see each node
         recorded = [(node, node.__dict__.get("step")) for node in self.iterate()]
         for node, _ in recorded:
             node.__dict__["step"] = _recording(node, getattr(node, "step"), visited)  # noqa: B009  a leaf gets `step` when it is bound
         try:
             self.step()
         finally:
+            self.context.may_remember = may_remember
             for node, own in recorded:
                 if own is None:
                     del node.__dict__["step"]

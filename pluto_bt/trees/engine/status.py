@@ -33,3 +33,8 @@ STATUS_OF_NAME: Final[dict[str, Result]] = {
     "SKIPPED": SKIPPED,
 }
 NAME_OF_STATUS: Final[dict[Result, str]] = {status: name for name, status in STATUS_OF_NAME.items()}
+
+
+def name_of(result: Result) -> str:
+    """The name of an answer. Cheaper than a look into `NAME_OF_STATUS`, for which the Enum is asked for its hash in Python."""
+    return "IDLE" if result is IDLE else result._name_

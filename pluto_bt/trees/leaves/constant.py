@@ -9,6 +9,8 @@ from pluto_bt.trees.engine.status import FAILURE, SUCCESS, Result
 class AlwaysSuccess(Node):
     """SUCCESS."""
 
+    PORTS_ALONE = True
+
     def step(self) -> Result:
         self.status = SUCCESS
         return SUCCESS
@@ -16,6 +18,8 @@ class AlwaysSuccess(Node):
 
 class AlwaysFailure(Node):
     """FAILURE."""
+
+    PORTS_ALONE = True
 
     def step(self) -> Result:
         self.status = FAILURE

@@ -17,6 +17,7 @@ from pluto_bt.trees.engine.status import SKIPPED, Result
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
+from pluto_bt.trees.loader.steady_parts import remember_steady_parts
 from pluto_bt.trees.loader.wiring import Readers, wire, wire_leaf
 from pluto_bt.trees.script import ScriptRunner
 from pluto_bt.trees.tracked import Tracked
@@ -34,6 +35,7 @@ class Construction:
         root = self._make(plan, None)
         if not self._report.stops_loading:
             self._set_up()
+            remember_steady_parts(self.tracked, plan.scope.board, self._context)
         return root
 
     def _make(self, plan: Plan, parent: Any) -> Any:
