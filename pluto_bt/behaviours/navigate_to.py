@@ -47,6 +47,7 @@ class NavigateTo(PathDriver):
         self._blind_since_s = self._looked_s = self._planned_s = self._last_s
         self._blocked_since_s: float | None = None
         self._freeing: FreeItself | None = None
+        self._freed_s = self._last_s
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)
 
