@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test lint types bench dist clean help
+.PHONY: demo test fuzz lint types bench dist clean help
 
 help:            ## what there is to make
 	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*##/  -/'
@@ -25,6 +25,9 @@ GOALS ?= 8,3;13.5,3;10.5,8;2,3.5
 
 test: $(STAMP)   ## set everything up and run all tests
 	$(BIN)/python -m pytest -n 2 -q
+
+fuzz: $(STAMP)   ## loader, scripts and formatter for about ten minutes, elsewhere each time
+	FUZZ_FACTOR=40 $(BIN)/python -m pytest tests/fuzz -n 2 -q
 
 lint: $(STAMP)   ## ruff
 	$(BIN)/ruff check .

@@ -12,11 +12,12 @@ from pluto_bt import __version__
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.modules.robot_file import SHIPPED
 from pluto_bt.record.entries import Run
+from pluto_bt.resume import Resumption
 from pluto_bt.system import RecordRequest
 from pluto_bt.trees import Mission
 
 
-def record_request(path: Path, inputs: Inputs, mission: Mission, is_realtime: bool) -> RecordRequest:
+def record_request(path: Path, inputs: Inputs, mission: Mission, is_realtime: bool, resumption: Resumption | None = None) -> RecordRequest:
     """What the recorder is given. Raises: OSError if a file of the run cannot be read any more."""
     files: dict[str, bytes] = {}
     main = _pack("mission", mission.origin.files, files)
@@ -28,6 +29,7 @@ def record_request(path: Path, inputs: Inputs, mission: Mission, is_realtime: bo
     run = Run(
         version=__version__, mode="threads" if is_realtime else "lockstep", mission=main, world=world, map=a_priori, platform=inputs.platform,
         seed=inputs.seed, start=inputs.start, tree=inputs.tree, ports=inputs.ports, settings=inputs.settings, plugins=inputs.plugins, hashes=hashes,
+        resumed=resumption.past.state if resumption is not None and resumption.is_resumed else {},
     )  # fmt: skip
     return RecordRequest(path, run, files)
 

@@ -7,10 +7,12 @@ from collections.abc import Callable
 
 from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.resume import HELD
 from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
+from pluto_bt.skills import wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
 
@@ -20,11 +22,11 @@ LOOK_EVERY_NS = NS // 2
 LOOK_EVERY_S = 0.05
 
 
-def rehearse(system: System, with_jobs: bool) -> None:
+def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
     """Drive half a second, so that every kernel is compiled before a watchdog looks. The system is in lockstep and is then thrown away.
 
     Args:
-        with_jobs: the jobs of motion may be asked for, so their kernels too.
+        with_jobs, with_walls: the jobs of motion, or wall follow, may be asked for, so their kernels too.
     """
     assert isinstance(system.scheduler, Lockstep)
     system.start_parts()
@@ -33,6 +35,8 @@ def rehearse(system: System, with_jobs: bool) -> None:
     system.scheduler.run_until(NS // 2)
     if with_jobs:
         system.robot.surroundings.warm()
+    if with_walls:
+        wall_path.warm()
 
 
 class Loop:
@@ -41,6 +45,7 @@ class Loop:
     def __init__(self, system: System) -> None:
         self._system = system
         self._interrupt = threading.Event()
+        self.held = ""  # why the mission waits for an operator before its first tick
         self.wall_time_s = 0.0  # from the first step to the last
 
     def interrupt(self) -> None:
@@ -50,7 +55,9 @@ class Loop:
     def run(self, mission: Mission) -> None:
         """Run `mission` to its end, then bring the robot to rest. The outcome is in the guard and in the executive."""
         system = self._system
-        system.executive.core.start(mission)
+        system.executive.core.start(mission, HELD if self.held else "")
+        if self.held:
+            system.say("warning", HELD, "executive", self.held)
         system.start_parts()
         if isinstance(system.clock, MonotonicClock):
             system.clock.restart()  # starting the gateway's process takes its time
@@ -63,6 +70,7 @@ class Loop:
             self.wall_time_s = (wall_ns() - begun_ns) / NS
             if isinstance(system.scheduler, Threads):
                 system.scheduler.stop()
+            system.executive.note_end(system.clock.now_s())
             system.stop_parts()
             system.executive.flush(system.clock.now_s())
             system.trace.close()
@@ -100,7 +108,9 @@ class Loop:
         mission, limit_s = system.executive.core.mission, system.options.max_time_s
         if guard.ended is not None or (mission is not None and mission.is_over):
             return True
-        if self._interrupt.is_set():
+        if self.held and limit_s is None and not system.options.has_gateway and isinstance(system.scheduler, Lockstep):
+            guard.end(HELD, self.held)  # nobody is there who could let it go on
+        elif self._interrupt.is_set():
             guard.end("interrupted", "interrupted: Ctrl-C, SIGTERM, or the terminal was closed")
         elif limit_s is not None and system.clock.now_s() >= limit_s:
             guard.end("max-time", f"the mission was still running after --max-time {limit_s:g} s")

@@ -30,6 +30,7 @@ class RunResult(msgspec.Struct, kw_only=True):
     leaves: dict[str, str] = {}
     blackboard: dict[str, Any] = {}
     faults: list[dict[str, str | int]] = []
+    contracts: list[dict[str, Any]] = []
     contacts: list[dict[str, Any]] = []
     text: str = ""
     seed: int = 0

@@ -16,17 +16,22 @@ from pluto_bt.behaviours.look_around import WristTour
 from pluto_bt.behaviours.path_driver import PathDriver
 from pluto_bt.behaviours.paths import FindPath
 from pluto_bt.behaviours.plan_path import Planning
+from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
+from pluto_bt.commands.option_values import groot_address
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.loop import Loop, rehearse
+from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
-from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock
+from pluto_bt.resume import ResumeRequest, Resumption, decide
+from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, calendar_ns
 from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
+from pluto_bt.trees.journal import Journal
 
 USES_THE_MAP = (WristTour, FindPath, Planning, PathDriver)
 
@@ -38,8 +43,9 @@ class Runner:
         self.inputs = inputs
         self.mission = mission
         with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
-        quiet = replace(options, trace_path=None, has_gateway=False, record=None, own_clock=None, on_event=lambda event: None)
-        rehearse(System(quiet, VirtualClock()), with_jobs)
+        with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
+        quiet = replace(options, trace_path=None, has_gateway=False, groot=None, record=None, own_clock=None, on_event=lambda event: None)
+        rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
@@ -65,10 +71,31 @@ class Runner:
         try:
             self.loop.run(self.mission)
             self.result = self._sum_up()
+            self._end_journal()
         finally:
             if self.system.recorder is not None:
                 self.system.recorder.finish(self.result.as_json())
         return self.result
+
+    def keep_journal(self, resumption: Resumption) -> None:
+        """Write a journal, and begin as was decided. Raises: OSError if it cannot be written."""
+        system = self.system
+        read = system.board.reader("Localization/Pose")
+
+        def where() -> tuple[tuple[float, float, float] | None, tuple[float, float, float] | None]:
+            sample = read()
+            believed = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
+            return None if believed is None else (believed[0], believed[1], believed[3]), system.simulator.pose
+
+        journal = Journal(resumption.path, resumption.past)
+        system.executive.keeper = JournalKeeper(self.mission, journal, resumption.past, where)
+        self.loop.held = resumption.held
+
+    def _end_journal(self) -> None:
+        """A run that came to its end leaves nothing to resume; one that only waited for an operator leaves what it found."""
+        keeper, activity = self.system.executive.keeper, self.system.executive.core.mission
+        if keeper is not None and not (self.loop.held and (activity is None or activity.ticks == 0)):
+            keeper.end()
 
     def _sum_up(self) -> RunResult:
         system, simulator = self.system, self.system.simulator
@@ -86,7 +113,7 @@ class Runner:
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
             trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
             seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
-            faults=[fault.as_json() for fault in self.inputs.warnings],
+            faults=[fault.as_json() for fault in self.inputs.warnings], contracts=[kept.as_json() for kept in system.executive.contracts],
         )  # fmt: skip
 
     def _outcome(self) -> tuple[str, str, str]:
@@ -114,12 +141,16 @@ def make_runner(
     max_time_s: float | None = None,
     trace_path: str | Path | None = None,
     record: str | Path | None = None,
+    resume: ResumeRequest | None = None,
     gateway: str | None = None,
+    groot: str | None = None,
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
 ) -> Runner:
     """Load the mission, which `read_inputs` has checked, then make the robot around it.
+
+    With `resume` a journal is kept, and looked at first.
 
     Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
     """
@@ -132,15 +163,21 @@ def make_runner(
         return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
 
     mission = load(inputs.mission_path, **of_file)
+    resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
+    if resumption is not None:
+        inputs = replace(inputs, start=resumption.start or inputs.start)
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
         trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
-        gateway=parse_address(gateway) if gateway is not None else None, load=load, on_event=on_event, on_progress=on_progress,
-        record=None if record is None else record_request(Path(record), inputs, mission, realtime), own_clock=own_clock,
+        gateway=parse_address(gateway) if gateway is not None else None,
+        groot=groot_address(groot) if groot is not None else None, load=load, on_event=on_event, on_progress=on_progress,
+        record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip
     runner = Runner(inputs, mission, clock, options)
     topics.view = lambda: runner.system.robot.snapshot
     runner.mission.attach(runner.system.robot)
+    if resumption is not None:
+        runner.keep_journal(resumption)
     return runner
 
 

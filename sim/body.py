@@ -82,6 +82,11 @@ class Body:
         for entry in (motion.BODY_SPEED, motion.BODY_TURN_RATE, motion.ARC_SPEED, motion.ARC_TURN_RATE):
             self._state[entry] = 0.0
 
+    def carry(self, to: Pose) -> None:
+        """Somebody lifts the robot and sets it down; its wheels go on as they did, and count nothing of it."""
+        self._state[:3] = to
+        self._read()
+
     def reach_m(self, n_ticks: int, radius_m: float) -> float:
         """An upper bound of how far any point of the outline can move in the next `n_ticks`."""
         command_v, command_w = self.motors.command

@@ -13,7 +13,7 @@ import numpy as np
 
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Platform
-from pluto_bt.maps.world import Action, FaultAction, Put, Remove, World
+from pluto_bt.maps.world import Action, Carry, FaultAction, Put, Remove, World
 from sim.body import Body
 from sim.device import Device
 from sim.faultboard import FaultBoard
@@ -104,6 +104,9 @@ class Simulator:
             self._travel.forget()
         elif isinstance(action, Put):
             self._around.place(action.id, action.x_m, action.y_m)
+            self._travel.forget()
+        elif isinstance(action, Carry):
+            self._body.carry((action.x_m, action.y_m, self._body.theta_rad if action.theta_rad is None else action.theta_rad))
             self._travel.forget()
         else:
             self.on_set_topic(action.topic, action.value)

@@ -27,7 +27,9 @@ from pluto_bt.trees.dump.palette import ARROWS, default_text
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.ports import PortModel
 from tests.doc_texts import RUN_REASONS, STATUS_MEANINGS
+from tests.fault_cases import CASES, GOES_ON
 from tests.safety_cases import CAUSES
+from tests.tutorials import read_tutorials
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = (*sorted((ROOT / "docs").glob("*.md")), ROOT / "README.md")
@@ -172,6 +174,12 @@ def stops() -> str:
     return table(("cause", "noticed by", "at rest within", "measured", "status", "if it does not clear, the run ends", "clears"), rows)
 
 
+def fault_cases() -> str:
+    """What breaks, what becomes of the mission, how soon zero velocity is commanded."""
+    rows = ((case.name, case.how, "–" if case.zero_within_s == GOES_ON else f"{case.zero_within_s:g} s", case.outcome) for case in CASES)
+    return table(("fault, for ever unless said", "noticed by, and then", "zero within", "the run ends"), rows)
+
+
 def reasons() -> str:
     """The reasons of leaves."""
     of_leaves = {word: reason for word, reason in REASONS.items() if word not in RUN_REASONS or word in WAITING}
@@ -231,6 +239,11 @@ def modules() -> str:
     return table(("module", "group (thread)", "every", "woken by", "needs", "critical", "only with the device", "budget a step"), rows)
 
 
+def tutorials() -> str:
+    """The tutorial missions, in order."""
+    return table(("run it", "new idea"), ((f"`{one.command}`", one.idea) for one in read_tutorials()))
+
+
 TABLES: dict[str, Callable[[], str]] = {
     "actions": lambda: nodes(False, "Action"),
     "conditions": lambda: nodes(False, "Condition"),
@@ -243,11 +256,12 @@ TABLES: dict[str, Callable[[], str]] = {
     "nav2-missing": missing_nodes,
     "motion-ports": motion_ports,
     "topics": topics,
-    "faults": faults,
+    "fault-cases": fault_cases,
     "fault-units": fault_units,
     "parameters": parameters,
     "shipped": shipped,
     "stops": stops,
+    "faults": faults,
     "reasons": reasons,
     "chain-reasons": chain_reasons,
     "run-reasons": run_reasons,
@@ -255,6 +269,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "requests": requests,
     "shell": shell,
     "modules": modules,
+    "tutorials": tutorials,
 }
 
 

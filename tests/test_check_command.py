@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pluto_bt.cli import main
 from pluto_bt.commands.fault_formats import as_github, as_sarif
+from pluto_bt.commands.ways_in_world import Ways, inner_radius_m
+from pluto_bt.maps.world import Shape, World
+from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.source import Fault
 
 MISSION = """<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>
@@ -52,7 +57,15 @@ LEGS = [
     ("inside a thing", '<GoTo goal="9;5"/>', ["2:13 error goal-blocked"]),
     ("too near to a wall for the body", '<MoveTo goal="7.9;5"/>', ["2:15 error goal-blocked"]),
     ("near enough counts as there", '<GoTo goal="7.3;5" tolerance_m="0.5"/>', []),
+    ("a planned way round", '<NavigateTo goal="12;5"/>', []),
+    ("a goal by its name", '<NavigateTo goal="gate"/>', []),
+    ("a name that is no goal", '<NavigateTo goal="gtae"/>', ["2:19 error unknown-goal"]),
+    ("home, which this world has not", '<NavigateTo goal="home"/>', ["2:19 error unknown-goal"]),
+    ("one goal after the other", '<NavigateThroughPoses goals="6,5;gate;9,5"/>', ["2:30 error goal-blocked"]),
+    ("planned, no way in", '<NavigateTo goal="17;8.5"/>', ["2:19 error no-way"]),
     ("no way in", '<MoveTo goal="17;8.5"/>', ["2:15 error no-way"]),
+    ("after what cannot be reached nothing is known", '<Sequence><MoveTo goal="17;8.5"/><GoTo goal="12;5"/></Sequence>', ["2:25 error no-way"]),
+    ("beyond the yard", '<MoveTo goal="40;5"/>', ["2:15 error no-way"]),
     ("into what is forbidden", '<GoTo goal="4;8"/>', ["2:13 error forbidden"]),
     ("through what is forbidden", '<Sequence><GoTo goal="1;8"/><GoTo goal="7;8.2"/></Sequence>', ["2:41 error forbidden"]),
     ("round what is forbidden", '<Sequence><GoTo goal="1;8"/><MoveTo goal="7;8.2"/></Sequence>', []),
@@ -85,9 +98,35 @@ def test_distance_and_time_of_each_leg_are_told(capsys: pytest.CaptureFixture[st
     assert lines[-1].startswith("2 legs, 7.0 m, about ") and lines[-1].endswith("1 more of unknown length")
 
 
+GAPS = [(0.3, True), (0.9, False), (2.0, False)]
+
+
+@pytest.mark.parametrize(("gap_m", "is_cut_off"), GAPS)
+@pytest.mark.parametrize("angle_deg", [0, 17, 45])
+def test_a_way_is_called_missing_only_where_nothing_of_the_robots_width_passes(gap_m: float, is_cut_off: bool, angle_deg: float) -> None:
+    """Two half-planes with a gap, turned against the cells of the grid; the robot is 0.85 m wide."""
+    robot, turn = load_robot_file("atrv2"), complex(math.cos(math.radians(angle_deg)), math.sin(math.radians(angle_deg)))
+
+    def wall(name: str, *corners: complex) -> Shape:
+        return Shape(name, "wall", np.array([[(turn * corner).real, (turn * corner).imag] for corner in corners]))
+
+    def at(corner: complex) -> tuple[float, float]:
+        return (turn * corner).real, (turn * corner).imag
+
+    box = wall("box", -8 - 8j, 8 - 8j, 8 + 8j, -8 + 8j, -8 - 8j)
+    world = World("w", shapes=(box, wall("left", -8, -gap_m / 2), wall("right", gap_m / 2, 8)))
+    start, goal = at(3 - 4j), at(-3 + 4j)
+    width_m = 2.0 * inner_radius_m(np.array(robot.body.outline_m))
+    assert (gap_m < width_m) is is_cut_off
+    ways = Ways(world, robot, robot.plan, [start, goal])
+    assert ways.is_cut_off(start, goal) is is_cut_off
+    length_m = ways.length_m(start, goal, 0.3)
+    assert length_m is None if gap_m < ways.width_m else length_m == pytest.approx(abs(3 - 4j) * 2, rel=0.1)
+
+
 def test_a_way_round_is_longer_than_the_straight_one(capsys: pytest.CaptureFixture[str]) -> None:
     (leg,) = checked(capsys, '<MoveTo goal="12;5"/>')[1]["legs"]
-    assert 2 * (4.4**2 + 6.0**2) ** 0.5 * 0.5 < leg["distance_m"] < 14.0  # past a corner of the block, and not along the yard's wall
+    assert math.hypot(6.0, 2.3) + math.hypot(2.0, 2.3) < leg["distance_m"] < 13.0  # past the corners of the block, and not along the yard's wall
 
 
 def test_a_loop_over_a_list_is_a_leg_for_each_element_and_a_round_ends_at_its_beginning(capsys: pytest.CaptureFixture[str]) -> None:
@@ -101,6 +140,14 @@ def test_a_loop_over_a_list_is_a_leg_for_each_element_and_a_round_ends_at_its_be
 def test_a_world_whose_script_opens_ways_makes_a_missing_way_a_warning(capsys: pytest.CaptureFixture[str]) -> None:
     script = '<script><at t="5"><remove id="lid"/></at></script>'
     assert checked(capsys, '<MoveTo goal="17;8.5"/>', more=script)[0] == ["2:15 warning no-way"]
+    assert checked(capsys, '<MoveTo goal="9;5"/>', more=script)[0] == ["2:15 warning goal-blocked"]
+    assert checked(capsys, '<MoveTo goal="4;8"/>', more=script)[0] == ["2:15 error forbidden"]
+
+
+def test_a_robot_with_eyes_may_leave_the_mapped_area_on_its_way(capsys: pytest.CaptureFixture[str]) -> None:
+    area = '<area kind="map">1,1 12,1 12,9 11,9 11,2.5 7,2.5 7,9 1,9</area>'
+    assert checked(capsys, '<GoTo goal="11.5;5"/>', more=area)[0] == ["2:13 warning outside-map"]
+    assert checked(capsys, '<GoTo goal="13;5"/>', more=area)[0] == ["2:13 error outside-map"]
 
 
 def test_the_car_has_no_eyes_and_a_mapped_area(capsys: pytest.CaptureFixture[str]) -> None:

@@ -200,16 +200,20 @@ def test_the_robot_file_of_the_page_is_whole(tmp_path: Path) -> None:
     assert (robot.name, robot.devices.laser is not None, robot.devices.sonar) == ("cart", True, None)
 
 
-def test_the_leaf_of_the_page_is_short_and_passes_its_test(tmp_path: Path) -> None:
-    page = ROOT / "docs" / "leaves.md"
-    write_files(page, tmp_path)
+def test_the_leaf_of_the_page_is_short(tmp_path: Path) -> None:
+    write_files(ROOT / "docs" / "leaves.md", tmp_path)
     assert len(text_of(tmp_path / "way_is_clear.py").splitlines()) <= 40
+
+
+@pytest.mark.parametrize(("page", "test", "passed"), [("leaves", "test_way_is_clear.py", 2), ("tutorial", "test_round.py", 1)])
+def test_the_test_of_a_page_passes(tmp_path: Path, page: str, test: str, passed: int) -> None:
+    write_files(ROOT / "docs" / f"{page}.md", tmp_path)
     (tmp_path / "conftest.py").write_text("", encoding="utf-8")
-    words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "test_way_is_clear.py"]
+    words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", test]
     done = subprocess.run([sys.executable, *words], cwd=tmp_path, env={**os.environ, "PYTHONPATH": f"{ROOT}:{tmp_path}"},
                           capture_output=True, text=True, timeout=300, check=False)  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "2 passed" in done.stdout
+    assert f"{passed} passed" in done.stdout
 
 
 def shape_of(output: str) -> str:

@@ -202,3 +202,16 @@ def test_diff_of_long_missions_takes_no_time(capsys: pytest.CaptureFixture[str])
     assert main(["diff", "a.xml", "b.xml"]) == 1
     signs = [line[0] for line in capsys.readouterr().out.splitlines() if line[0] in "+->~"]
     assert signs.count("-") == signs.count("+") == 40
+
+
+def test_nesting_as_deep_as_is_allowed_is_no_trouble(capsys: pytest.CaptureFixture[str]) -> None:
+    depth = 250
+    body = "<Sequence><ForceSuccess>" * (depth // 2) + '<GoTo goal="3;3.5"/>' + "</ForceSuccess></Sequence>" * (depth // 2)
+    for name, goal in (("a.xml", "3;3.5"), ("b.xml", "3;3.6")):
+        Path(name).write_text(f'<root BTCPP_format="4"><BehaviorTree ID="M">{body.replace("3;3.5", goal)}</BehaviorTree></root>')
+    assert main(["check", "a.xml", "--world", "yard.xml"]) == 0
+    assert main(["fmt", "a.xml"]) == 0
+    assert main(["diff", "a.xml", "b.xml"]) == 1
+    for form in ("ascii", "unicode", "dot", "svg", "xhtml", "xml"):
+        assert main(["tree", "a.xml", "--format", form]) == 0
+    capsys.readouterr()

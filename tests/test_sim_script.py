@@ -23,7 +23,7 @@ from drivers.records import (
     SpeedRecord,
     WristRecord,
 )
-from pluto_bt.maps.world import Area, FaultAction, Marker, Put, Remove, SetTopic, Terrain, When, World
+from pluto_bt.maps.world import Area, Carry, FaultAction, Marker, Put, Remove, SetTopic, Terrain, When, World
 from sim import Simulator, WristDevice
 
 SQUARE = points((1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0))
@@ -229,3 +229,13 @@ def test_removed_and_placed_things_are_gone_and_there_for_the_laser() -> None:
     sim = Simulator(world, robot, 0, ideal=True)
     ahead = {round(r.stamp_s, 1): r.ranges_m[180] for r in readings(sim, ScanRecord, "laser", 4.2)}
     assert [ahead[t] for t in (0.8, 1.0, 2.0, 3.0)] == pytest.approx([0.982, 4.982, 2.482, 0.982])
+
+
+def test_a_robot_that_is_carried_stands_there_and_its_wheels_know_nothing_of_it() -> None:
+    sim = Simulator(World("w", script=(at(1.0, Carry(3.0, -2.0, 1.5)), at(2.0, Carry(0.0, 0.0)))), cart(), 0)
+    sim.step(1.5)
+    assert sim.pose == pytest.approx((3.0, -2.0, 1.5))
+    sim.step(2.5)
+    assert sim.pose == pytest.approx((0.0, 0.0, 1.5)), "without an angle it points as before"
+    assert [record.distance_m for record in sim.devices["base"].read() if isinstance(record, OdometryRecord)][-1] == 0.0
+    assert sim.distance_m == 0.0

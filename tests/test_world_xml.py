@@ -16,7 +16,7 @@ from shared_data import shared_file
 
 from pluto_bt.maps import fault_table
 from pluto_bt.maps.load import load_world
-from pluto_bt.maps.world import At, FaultAction, Put, Remove, SetTopic, When, World
+from pluto_bt.maps.world import At, Carry, FaultAction, Put, Remove, SetTopic, When, World
 from pluto_bt.source import Fault, Faults, InputError
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -38,6 +38,7 @@ EVERYTHING = """\
   <terrain id="mud" slip="0.3" roll_deg="1" pitch_deg="5" magnetic_deg="10">0,0 2,0 2,2</terrain>
   <script>
     <at t="30"><remove id="fence"/></at> <at t="45"><place id="box" x="3" y="1"/><place id="box"/></at>
+    <at t="50"><place id="pluto" x="4" y="5" theta_deg="90"/><place id="pluto" x="1" y="2"/></at>
     <at t="60"><fault device="laser" kind="fatal" for="20"/><fault device="sonar" kind="noise" value="0.1" beams="2-5"/></at>
     <when inside="kitchen" once="true"><set topic="world/alarm" value="true"/></when>
     <when inside="mud"><fault device="module:sick" kind="slow" delay="0.2"/></when>
@@ -82,9 +83,11 @@ def test_every_element_and_attribute_is_read(tmp_path: Path) -> None:
 
 
 def test_scripts_are_read(tmp_path: Path) -> None:
-    first, second, third, entering, again = world_of(tmp_path, EVERYTHING).script
+    first, second, carried, third, entering, again = world_of(tmp_path, EVERYTHING).script
     assert isinstance(first, At) and first.t_s == 30 and isinstance(first.actions[0], Remove) and first.actions[0].id == "fence"
     assert isinstance(second, At) and [(put.x_m, put.y_m) for put in second.actions if isinstance(put, Put)] == [(3.0, 1.0), (None, None)]
+    assert isinstance(carried, At)
+    assert [(one.x_m, one.y_m, one.theta_rad) for one in carried.actions if isinstance(one, Carry)] == [(4.0, 5.0, math.pi / 2), (1.0, 2.0, None)]
     assert isinstance(third, At)
     fatal, noise = third.actions
     assert isinstance(fatal, FaultAction) and (fatal.device, fatal.kind, fatal.for_s) == ("laser", "fatal", 20.0)
@@ -97,7 +100,7 @@ def test_scripts_are_read(tmp_path: Path) -> None:
 
 def test_places_point_at_the_element(tmp_path: Path) -> None:
     world = world_of(tmp_path, EVERYTHING)
-    assert (world.shapes[2].place.line, world.shapes[2].place.column, world.robot.place.line) == (3, 64, 19)
+    assert (world.shapes[2].place.line, world.shapes[2].place.column, world.robot.place.line) == (3, 64, 20)
 
 
 def test_what_has_no_id_gets_one_that_nobody_writes(tmp_path: Path) -> None:

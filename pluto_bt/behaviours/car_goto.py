@@ -37,6 +37,11 @@ class CarGoTo(SteppedLeaf):
         self._skill = CarGoto(x, y, float(self.get_input("tolerance_m")), area.has_line)
         return None
 
+    def resume(self, robot: Robot) -> None:
+        """Its rounds begin anew: after a pause the wheels stand still, and nothing hinders them."""
+        super().resume(robot)
+        self._skill = CarGoto(self._skill.x_m, self._skill.y_m, self._skill.tolerance_m, self._skill.line_is_inside)
+
     def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
         """One step of the skill."""
         x, y, theta = pose

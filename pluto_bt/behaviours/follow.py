@@ -22,15 +22,18 @@ POST_EVERY_S: Final = 0.3
 TOLERANCE_M: Final = 0.05
 FACE_PER_S: Final = 1.2  # turn rate for each radian that the target is off
 FACING_RAD: Final = math.radians(8.0)
+ASIDE_RAD, WRIST_RAD = math.radians(40.0), math.radians(10.0)  # a target farther aside draws the laser, again when it has gone so far
 TEXTS: Final = {Search.NOBODY: "nothing moves here", Search.LOST: "the target is out of sight for too long"}
 
 
 class Follow(MotionLeaf):
     """Follows the nearest moving thing that the laser sees, at `distance_m`; SUCCESS after `duration_s` of following.
 
-    Fails with `no-object` if nothing moves for 10 s, with `target-lost` if the target stays out of sight for 6 s.
+    Fails with `no-object` if nothing moves for 10 s, with `target-lost` if the target stays out of sight for 8 s.
+    The wrist keeps the laser on a target that walks off to the side.
     """
 
+    PATIENCE_S = {"bumper": 6.0}  # whom it met walks on
     INPUT_PORTS = {
         "target": Port(str, False, "whom: what is as narrow as a person, or anything", "person", choices=tuple(WIDEST_M)),
         "distance_m": Port(float, False, "distance kept, from the robot's middle to the target's near side", 1.5, unit="m", ge=0.5, le=8.0),
@@ -47,6 +50,11 @@ class Follow(MotionLeaf):
         self._scan_s = self._next_post_s = -math.inf
         self._found_s: float | None = None
         return None
+
+    def initialise(self) -> None:
+        """The laser looks ahead at first."""
+        super().initialise()
+        self._pan_rad = 0.0
 
     def resume(self, robot: Robot) -> None:
         """What happened during the pause is unknown: the target is looked for where it was."""
@@ -78,10 +86,31 @@ class Follow(MotionLeaf):
         if self.elapsed_s - self._found_s >= float(self.get_input("duration_s")):
             return self.succeed("followed")
         aim = self._skill.aim(at, now_s)
+        self._point(robot, aim.turn_rad)
         if now_s >= self._next_post_s - 1e-6:
             self._next_post_s = now_s + POST_EVERY_S
             self._drive(robot, aim, at)
         return self.wait(f"target {aim.distance_m:.2f} m away{'' if state is Search.SEEN else ', out of sight'}")
+
+    def terminate(self, new_status: Status) -> None:
+        """Stand, and look ahead again."""
+        super().terminate(new_status)
+        robot = self.robot
+        if robot is not None and self._pan_rad != 0.0:
+            self._turn_wrist(robot, 0.0)
+
+    def _point(self, robot: Robot, bearing_rad: float) -> None:
+        """Turn the laser after a target that comes near the edge of its field; look ahead again when it is ahead."""
+        wanted_rad = bearing_rad if abs(bearing_rad) > ASIDE_RAD else 0.0
+        if abs(wanted_rad - self._pan_rad) > WRIST_RAD and (wanted_rad != 0.0 or abs(bearing_rad) < 0.5 * ASIDE_RAD):
+            self._turn_wrist(robot, wanted_rad)
+
+    def _turn_wrist(self, robot: Robot, pan_rad: float) -> None:
+        wrist = robot.platform.devices.wrist
+        if wrist is not None:
+            limit_rad, self._pan_rad = math.radians(wrist.pan_limit_deg), pan_rad
+            rate, acceleration = math.radians(wrist.max_rate_dps), math.radians(wrist.max_acceleration_dps2)
+            robot.point_wrist(max(-limit_rad, min(limit_rad, pan_rad)), 0.0, rate, acceleration)
 
     def _look(self, robot: Robot, at: Planar) -> None:
         """Take the newest scan, once, as soon as it is known where it was taken from."""

@@ -46,8 +46,7 @@ class GoTo(MotionLeaf):
         trouble = self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble
-        waiting = status.text if status is not None and status.reason else ""
-        return self.wait(f"{self._to_go(robot)}; {waiting}" if waiting else self._to_go(robot))
+        return self.wait(self._to_go(robot))
 
     def _to_go(self, robot: Robot) -> str:
         pose = pose_of(robot)

@@ -10,7 +10,7 @@ from py_trees.common import Status
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, pose_doubt
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import Pair
@@ -25,6 +25,7 @@ POST_S: Final = 0.2
 BLOCKED_S: Final = 6.0
 WRIST_RAD: Final = math.radians(2.0)
 WRIST_DPS, WRIST_DPS2 = 40.0, 80.0
+KEEP: Final = {"keep_facing": Port(bool, False, "true: the laser stays on the object at the end", False)}
 RADIUS: Final = {"radius_m": Port(float, True, "distance from the middle of the object", unit="m", ge=0.1)}
 
 
@@ -48,7 +49,8 @@ class FindObject(Leaf):
             return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            return self.fail("no-pose", "it is not known where the robot is")
+            doubt = pose_doubt(robot)
+            return self.fail(doubt.reason or "no-pose", doubt.text or "it is not known where the robot is")
         things = things_around(around.map, around.robot)
         inside = [thing for thing in things if self._fits(robot, around, thing)]
         for thing in inside:
@@ -84,7 +86,7 @@ class CircleObject(MotionLeaf):
     """Circles the object of FindObject, the laser turned to it as far as the wrist goes. Where the circle is blocked it goes the other
     way round; blocked there too, it fails with `stuck`."""
 
-    INPUT_PORTS = {**RADIUS, "turns": Port(float, False, "how many times around", 1.0, ge=0.0), **MOTION_INPUTS}
+    INPUT_PORTS = {**RADIUS, "turns": Port(float, False, "how many times around", 1.0, ge=0.0), **KEEP, **MOTION_INPUTS}
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
     def begin(self, robot: Robot) -> Status | None:
@@ -129,7 +131,8 @@ class CircleObject(MotionLeaf):
         """Stand, and look ahead again."""
         super().terminate(new_status)
         robot = self.robot
-        if robot is not None and getattr(self, "_pointed_rad", math.inf) != math.inf:
+        stays = new_status == Status.SUCCESS and self.get_input("keep_facing")
+        if robot is not None and not stays and getattr(self, "_pointed_rad", math.inf) != math.inf:
             robot.point_wrist(0.0, 0.0, math.radians(WRIST_DPS), math.radians(WRIST_DPS2))
 
     def _drive(self, robot: Robot, around: Surroundings, thing: Thing, now_s: float) -> None:
@@ -142,11 +145,12 @@ class CircleObject(MotionLeaf):
         self._face(robot, around, thing)
 
     def _face(self, robot: Robot, around: Surroundings, thing: Thing) -> None:
-        """Turn the laser to the object."""
-        wrist = robot.platform.devices.wrist
-        if wrist is None:
+        """Turn the laser to the object. It stands before the robot's middle, and so the object lies farther back for it."""
+        wrist, laser = robot.platform.devices.wrist, robot.platform.devices.laser
+        if wrist is None or laser is None:
             return
         x, y, theta = around.robot
+        x, y = x + laser.x_m * math.cos(theta) - laser.y_m * math.sin(theta), y + laser.x_m * math.sin(theta) + laser.y_m * math.cos(theta)
         bearing_rad = math.remainder(math.atan2(thing.y_m - y, thing.x_m - x) - theta, math.tau)
         limit_rad = math.radians(wrist.pan_limit_deg)
         pan_rad = max(-limit_rad, min(limit_rad, bearing_rad))

@@ -42,7 +42,7 @@ class JobLeaf(MotionLeaf):
             return
         job, command = robot.newest("motion/job"), self._ticket.command
         is_ours = isinstance(job, JobState) and job.number == self._number
-        self._was_accepted = False
+        self._was_accepted, self._posted_s = False, self._last_s
         self._post_job(robot, MotionCommand.RESUME if is_ours else MotionCommand(command.flags), command.position, command.velocity)
 
     def follow(self, robot: Robot) -> Status:
@@ -69,7 +69,7 @@ class JobLeaf(MotionLeaf):
         if isinstance(job, JobState):
             self._number = job.number
         phase = MotionStatus(motion) if motion in tuple(MotionStatus) else MotionStatus.AT_REST
-        return self.wait(", ".join(filter(None, (code_name(phase), status.text if status.reason else ""))))
+        return self.wait(code_name(phase))
 
     def _post_job(self, robot: Robot, flags: MotionCommand, position: Pair, velocity: Pair) -> None:
         avoid = AVOIDANCE[self.get_input("avoid")]

@@ -7,6 +7,7 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import ClassVar, Final
 
 from py_trees.common import Status
@@ -19,6 +20,8 @@ from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
+TRIED_AGAIN: Final = ("odometry-frozen",)  # the stop filter lets held wheels try again every second
+CLEAR_S: Final = 2.0  # so long must they then go without the word before the patience begins anew
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
 MOTION_INPUTS: Final = {
@@ -34,11 +37,13 @@ class MotionLeaf(Leaf):
 
     Attributes:
         DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
-        WAY: how the leaf comes to its port `goal`: "straight", or "found" if it looks for a way; "stays" if it stays where it is; "" else.
+        WAY: how the leaf comes to its port `goal`: "straight", "planned" on the map, "found" on the way; "stays" if it stays where it is; "" else.
+        PATIENCE_S: seconds for which it lets the chain wait, where they differ from `WAITING`.
     """
 
     DRIVES: ClassVar = True
     WAY: ClassVar = ""
+    PATIENCE_S: ClassVar[Mapping[str, float]] = {}
 
     def initialise(self) -> None:
         """Forget the last run; the command itself goes out in the first `update`."""
@@ -47,7 +52,8 @@ class MotionLeaf(Leaf):
         self._moves = False
         self._ticket: Ticket | None = None
         self._was_accepted = False
-        self._word, self._word_since_s = "", 0.0
+        self._heard: FVectorState | None = None
+        self._word, self._word_since_s, self._word_seen_s = "", 0.0, -math.inf
         self._start_s = self._last_s = self._posted_s = self.now_s()
         self._timeout_s = float(self.get_input("timeout_s"))
 
@@ -67,7 +73,16 @@ class MotionLeaf(Leaf):
             self.resume(robot)
         if self.elapsed_s >= self._timeout_s:
             return self.fail("timeout", f"{self._timeout_s:g} s are over")
-        return self.follow(robot)
+        return self._told(self.follow(robot))
+
+    def _told(self, status: Status) -> Status:
+        """While the chain holds the robot back the leaf says with which word and why."""
+        if status is Status.RUNNING:
+            held = self._heard if self._heard is not None and self._heard.reason else None
+            self.reason = "" if held is None else held.reason
+            if held is not None:
+                self.feedback_message = "; ".join(filter(None, (self.feedback_message, f"{held.reason}: {held.text or sentence(held.reason)}")))
+        return status
 
     def terminate(self, new_status: Status) -> None:
         """Zero velocity, if the robot was told to move."""
@@ -131,7 +146,7 @@ class MotionLeaf(Leaf):
         """What motion says of our command, or None while it has not taken it."""
         if self._ticket is None:
             return None
-        status = robot.status(self._ticket)
+        status = self._heard = robot.status(self._ticket)
         self._was_accepted = self._was_accepted or status is not None
         return status
 
@@ -160,10 +175,14 @@ class MotionLeaf(Leaf):
         return self.fail("cancelled", "another command took its place")
 
     def _patience(self, word: str, text: str) -> Status | None:
-        """Let the chain wait for a while with the same word."""
+        """Let the chain wait for a while with the same word. Where the chain tries again, a moment without the word is no end of it."""
+        if word:
+            self._word_seen_s = self._last_s
+        elif self._word in TRIED_AGAIN and self._last_s - self._word_seen_s < CLEAR_S:
+            return None
         if word != self._word:
             self._word, self._word_since_s = word, self._last_s
-        if word and self._last_s - self._word_since_s >= WAITING[word]:
+        if word and self._last_s - self._word_since_s >= self.PATIENCE_S.get(word, WAITING[word]):
             return self.fail(word, text or sentence(word))
         return None
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Final
+import math
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -30,6 +31,7 @@ class NavigateTo(PathDriver):
     Fails with `no-path` if there is no way, or none any more; with `stuck` if it does not get on though there is one.
     """
 
+    WAY: ClassVar = "planned"
     INPUT_PORTS = {"goal": GOAL, "tolerance_m": TOLERANCE, **MOTION_INPUTS}
     OUTPUT_PORTS = {"path": Port(MapPath, False, "the way it follows"), **MOTION_OUTPUTS}
 
@@ -47,7 +49,7 @@ class NavigateTo(PathDriver):
         self._blind_since_s = self._looked_s = self._planned_s = self._last_s
         self._blocked_since_s: float | None = None
         self._freeing: FreeItself | None = None
-        self._freed_s = self._last_s
+        self._freed_s = -math.inf
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)
 

@@ -75,8 +75,7 @@ class PathDriver(MotionLeaf):
         if (why := self._stuck(status)) is not None:
             return why
         self._go(robot, here, is_at_point)
-        waiting = status.text if status is not None and status.reason else ""
-        return self.wait("; ".join(filter(None, (f"{self._following.left_m:.1f} m of the path to go", waiting))))
+        return self.wait(f"{self._following.left_m:.1f} m of the path to go")
 
     def _stuck(self, status: FVectorState | None) -> Status | None:
         most_s = self.robot.navigation.parameters.stuck_after_s if self.robot is not None else 0.0

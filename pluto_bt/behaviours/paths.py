@@ -13,7 +13,7 @@ from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, pose_doubt
 from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
 from pluto_bt.blackboard.messages import FVectorState, Pair
@@ -71,8 +71,9 @@ class FindPath(Leaf):
             return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            text, is_over = "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
-            return self.fail("no-pose", text) if is_over else self.wait(text)
+            doubt = pose_doubt(robot)
+            text, is_over = doubt.text or "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
+            return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
         goal = goal_of(self)
         around.openings.turn()
         if goal is not None and is_near(around, goal):
@@ -139,7 +140,7 @@ class FollowRay(MotionLeaf):
         if self._goal is not None and is_near(around, self._goal):
             around.blocked = 0
             return self._decide("none", "the goal is near", near=True)
-        if status is not None and self._word:
+        if status is not None and (self._word or status.reason == "walker"):  # he goes on: the place is not blocked
             self._following.pause(now_s)
         speed_mps = status.data[0] if status is not None else 0.0
         advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)

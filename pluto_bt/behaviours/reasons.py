@@ -19,6 +19,8 @@ class Reason(NamedTuple):
 REASONS: Final[dict[str, Reason]] = {
     # ended by the run itself, not by a leaf: max-time, interrupted, and those of supervision
     "base-lost": Reason("the base delivers nothing any more", "check the base, its cable and its power"),
+    "contract": Reason("a contract of the mission was broken", "see which one in the message, and `pluto replay FILE --contracts`"),
+    "held": Reason("a run that was cut off waits for an operator", "`pluto shell resume`, or start it with --resume resume"),
     "hung": Reason("a leaf or a module did not return", "look at the name in the message; a leaf's update() must return at once"),
     "interrupted": Reason("the run was ended from the keyboard", "start it again"),
     "leaf-error": Reason("a leaf raised an exception or returned no status", "see the node, file and line in the message"),
@@ -35,7 +37,7 @@ REASONS: Final[dict[str, Reason]] = {
     "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it"),
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
-    "lost": Reason("the position has become too uncertain", "bring the robot where its markers or its map can be seen"),
+    "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose, then go on"),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
     "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
     "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object"),
@@ -57,16 +59,18 @@ REASONS: Final[dict[str, Reason]] = {
     "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
     "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
     "wall-lost": Reason("the wall that was followed is not there any more", "look what became of it, then start again near a wall"),
+    "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
 
 WAITING: Final[dict[str, float]] = {
     # word → seconds for which a motion leaf lets the chain wait before it fails with that word
-    "bumper": 1.0,
+    "bumper": 4.0,  # who bumped into the robot goes on
     "laser-fatal": 30.0,  # the reboot takes about 20 s
     "laser-stale": 5.0,
     "sonar-stale": 5.0,
     "no-pose": 3.0,
+    "lost": 3.0,
     "no-wall": 3.0,
     "wall-lost": 0.0,
     "odometry-stale": 3.0,

@@ -10,7 +10,10 @@ from pluto_bt.blackboard.codes import MotionStatus, MovetoStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
+from pluto_bt.skills import reasons
 from pluto_bt.skills.sight import ScanView
+
+NO_DOUBT = FVectorState(0.0)
 
 if TYPE_CHECKING:
     from pluto_bt.behaviours.navigation import Navigation
@@ -99,9 +102,15 @@ class Robot(Protocol):
         """Zero velocity at once; beats every command that waits."""
 
 
+def pose_doubt(robot: Robot) -> FVectorState:
+    """Why the pose must not be believed: `reason` is `lost` or `no-pose`, or "" if nothing speaks against it."""
+    check = robot.newest("Localization/Check")
+    return check if isinstance(check, FVectorState) and check.reason in (reasons.LOST, reasons.NO_POSE) else NO_DOUBT
+
+
 def pose_of(robot: Robot) -> tuple[float, float, float] | None:
-    """(x m, y m, theta rad) of `Localization/Pose`, or None if it is missing or too old to trust."""
+    """(x m, y m, theta rad) of `Localization/Pose`, or None if it is missing, too old to trust, or not to be believed (`pose_doubt`)."""
     pose = robot.newest("Localization/Pose")
-    if not isinstance(pose, Pose) or robot.is_stale("Localization/Pose"):
+    if pose_doubt(robot) is not NO_DOUBT or not isinstance(pose, Pose) or robot.is_stale("Localization/Pose"):
         return None
     return (pose.pose[0], pose.pose[1], pose.pose[3])

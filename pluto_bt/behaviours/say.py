@@ -13,6 +13,7 @@ class Say(Leaf):
 
     INPUT_PORTS = {"text": Port(str, True, "what to say")}
     OUTPUT_PORTS = NO_PORTS
+    SIDE_EFFECT = True  # after a crash nothing is said twice
 
     def update(self) -> Status:
         """SUCCESS at once."""

@@ -8,7 +8,7 @@ from typing import Final
 from py_trees.common import Status
 
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
-from pluto_bt.behaviours.robot import Robot, pose_of
+from pluto_bt.behaviours.robot import Robot, pose_doubt, pose_of
 from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, MarkerState, SpeedState
 from pluto_bt.skills.car_goto import STEP_S
@@ -72,13 +72,13 @@ class SteppedLeaf(MotionLeaf):
             marker = robot.newest("car/marker")
             if not isinstance(marker, MarkerState) or marker.accepted_count == 0:
                 return "waiting for an accepted marker", MARKER_WAIT_S
-        return ("waiting for a pose", POSE_WAIT_S) if pose is None else ("", 0.0)
+        return (pose_doubt(robot).text or "waiting for a pose", POSE_WAIT_S) if pose is None else ("", 0.0)
 
     def _stand(self, robot: Robot, missing: str, patience_s: float) -> Status:
         if missing != self._waits_for:
             self._waits_for, self._ready_since_s = missing, self._last_s
         if self._last_s - self._ready_since_s >= patience_s:
-            return self.fail("no-pose", f"{missing}, {patience_s:g} s in vain")
+            return self.fail(pose_doubt(robot).reason or "no-pose", f"{missing}, {patience_s:g} s in vain")
         if self._moves:
             self.post(robot, CommandType.VELOCITY)
         return self.wait(missing)

@@ -10,7 +10,7 @@ import math
 
 import msgspec
 
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
@@ -93,7 +93,7 @@ class Surroundings:
     def look(self, robot: Robot, now_s: float) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is."""
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
-        if not isinstance(dead, Pose) or not isinstance(believed, Pose) or robot.is_stale("Localization/Pose"):
+        if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
             return False
         self.robot = (dead.pose[0], dead.pose[1], dead.pose[3])
         self.believed = (believed.pose[0], believed.pose[1], believed.pose[3])

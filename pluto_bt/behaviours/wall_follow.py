@@ -62,8 +62,7 @@ class WallFollow(MotionLeaf):
             self._way_m = max(self._way_m, raw.position[0] - self._from_m)
         if self._way_m >= self._length_m:
             return self.succeed(f"{self._way_m:.2f} m along the wall")
-        waits_for = status.text if status.reason else ""
-        return self.wait(", ".join(filter(None, (f"{self._way_m:.2f} m along the wall", waits_for))))
+        return self.wait(f"{self._way_m:.2f} m along the wall")
 
     def resume(self, robot: Robot) -> None:
         """The wrist too."""

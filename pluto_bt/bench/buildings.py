@@ -11,11 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.maps.geometry import Pose
+from pluto_bt.modules.robot_file import load_robot_file
+from pluto_bt.skills.wall_parameters import WallParameters
+from pluto_bt.track import TrackPoint
 
 Array = NDArray[np.float64]
 Rng = np.random.Generator
 POST_CORNERS = 16
 DOOR_M = (0.8, 1.5)
+NEAR_M, SETTLED = 0.1, 20  # a camera that is so near to its distance for so many points of the track has arrived
 
 
 @dataclass
@@ -31,6 +35,13 @@ class Building:
     text: str
     edges: Array
     way_m: float
+
+    @classmethod
+    def for_seed(cls, seed: int) -> tuple[Building, str, str]:
+        """A building, the platform and the side to follow it on: every platform, inside and outside, both sides, in turn."""
+        platform, inside, right = ("atrv2", "pioneer")[seed % 2], seed // 2 % 2 == 1, seed // 4 % 2 == 1
+        wall = load_robot_file(platform).wall
+        return cls.make(seed, platform, inside, right, wall.distance_m + wall.camera_side_m), platform, "right" if right else "left"
 
     @classmethod
     def make(cls, seed: int, platform: str, inside: bool, right: bool, middle_m: float) -> Building:
@@ -116,6 +127,18 @@ class Kept(NamedTuple):
     straight_share: float
 
 
+def kept(track: Sequence[TrackPoint], wall: WallParameters, side: str, edges: Array, distance_m: float) -> Kept:
+    """How a run kept the distance, from when the camera first had it for two seconds."""
+    poses = [point.pose for point in track]
+    cameras = camera_path(poses, wall.camera_back_m, wall.camera_side_m if side == "left" else -wall.camera_side_m)
+    is_near = np.abs(distances(cameras, edges)[0] - distance_m) < NEAR_M
+    arrived = np.flatnonzero(np.convolve(is_near, np.ones(SETTLED)) >= SETTLED)
+    if not len(arrived):
+        return Kept(math.inf, math.inf, 0.0)
+    corner_m = distance_m + wall.camera_side_m + wall.fillet_m + wall.camera_back_m  # so far from a corner its turn begins to matter
+    return kept_distance(cameras[arrived[0] :], edges, distance_m, corner_m)
+
+
 def camera_path(poses: Sequence[Pose], back_m: float, side_m: float) -> Array:
     """(n, 2) where a camera was that is held `back_m` behind and `side_m` to the left of the robot."""
     x, y, theta = np.array(poses).T
@@ -123,15 +146,20 @@ def camera_path(poses: Sequence[Pose], back_m: float, side_m: float) -> Array:
     return np.column_stack((x - c * back_m - s * side_m, y - s * back_m + c * side_m))
 
 
+def distances(points: Array, edges: Array) -> tuple[Array, Array]:
+    """(n,) how far points (n, 2) are from the nearest edge, and (n, 2) the nearest place on it."""
+    starts, steps = edges[:, None, :2], edges[:, None, 2:] - edges[:, None, :2]
+    share = np.clip(((points - starts) * steps).sum(-1) / np.maximum((steps**2).sum(-1), 1e-12), 0.0, 1.0)
+    feet = starts + share[..., None] * steps
+    away = np.hypot(feet[..., 0] - points[:, 0], feet[..., 1] - points[:, 1])
+    nearest = away.argmin(axis=0), np.arange(len(points))
+    return away[nearest], feet[nearest]
+
+
 def kept_distance(cameras: Array, edges: Array, distance_m: float, corner_m: float) -> Kept:
     """Compare the distances of points (n, 2) from the nearest edge with the one to keep. Nearer than `corner_m` to its ends an edge is a corner."""
-    starts, steps = edges[:, None, :2], edges[:, None, 2:] - edges[:, None, :2]
-    share = np.clip(((cameras - starts) * steps).sum(-1) / np.maximum((steps**2).sum(-1), 1e-12), 0.0, 1.0)
-    feet = starts + share[..., None] * steps
-    away = np.hypot(feet[..., 0] - cameras[:, 0], feet[..., 1] - cameras[:, 1])
-    nearest = away.argmin(axis=0), np.arange(len(cameras))
-    foot, off = feet[nearest], np.abs(away[nearest] - distance_m)
+    away, feet = distances(cameras, edges)
+    off = np.abs(away - distance_m)
     corners = edges[:, :2].tolist() + edges[:, 2:].tolist()
-    to_corner = np.min([np.hypot(foot[:, 0] - x, foot[:, 1] - y) for x, y in corners], axis=0)
-    is_straight = to_corner > corner_m
+    is_straight = np.min([np.hypot(feet[:, 0] - x, feet[:, 1] - y) for x, y in corners], axis=0) > corner_m
     return Kept(float(off[is_straight].max(initial=0.0)), float(off[~is_straight].max(initial=0.0)), float(is_straight.mean()))

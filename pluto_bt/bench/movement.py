@@ -1,23 +1,27 @@
-"""The jobs of motion in worlds drawn from seeds: how often they reach what they must, how far off, how fast the whole robot runs.
+"""Everything that moves the robot, in worlds drawn from seeds: what it touches, how often it reaches what it must, how far off, how fast.
 
-`RUNS` worlds of each kind; the tests play a few of the same kinds.
+Patrols in 306 worlds, goto around single things, moveto in towns, explore in yards, investigate. The tests play a few of the same kinds.
 """
 
 from __future__ import annotations
 
 import math
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from pluto_bt.bench import lone_things, patrols
+from pluto_bt.bench.buildings import Building, kept
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.towns import Town
 from pluto_bt.bench.yards import Yard
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.result import RunResult
 from pluto_bt.runner import Runner, make_runner
 
-RUNS = 20
+TOWNS, YARDS, BUILDINGS = 40, 50, 40
 MISSION = '<root BTCPP_format="4"><BehaviorTree ID="main">{}</BehaviorTree></root>'
 OBJECT = """<world name="field" seed="{seed}"><wall id="w">-12,-12 12,-12 12,12 -12,12 -12,-12</wall>
 <circle id="o" x="2" y="1" r="{r}"/><robot platform="atrv2" x="-6" y="-2" theta_deg="0"/></world>"""
@@ -46,7 +50,7 @@ def _rows(name: str, results: list[RunResult], target: str) -> list[BenchRow]:
 def towns(folder: Path) -> list[BenchRow]:
     """Moveto through towns."""
     results = []
-    for seed in range(RUNS):
+    for seed in range(TOWNS):
         town = Town.make(1000 + seed)
         results.append(play(folder, f'<MoveTo goal="{town.goal[0]};{town.goal[1]}"/>', town.text).result)
     return _rows("moveto in towns: goals reached", results, ">= 95")
@@ -55,7 +59,7 @@ def towns(folder: Path) -> list[BenchRow]:
 def yards(folder: Path) -> list[BenchRow]:
     """Explore in yards: home again, covered, never outside."""
     results, shares, worst_m = [], [], math.inf
-    for seed in range(RUNS):
+    for seed in range(YARDS):
         yard = Yard.make(2000 + seed)
         runner = play(folder, f'<Explore rectangle="{yard.rectangle[0]:.2f};{yard.rectangle[1]:.2f}"/>', yard.text)
         results.append(runner.result)
@@ -69,7 +73,7 @@ def yards(folder: Path) -> list[BenchRow]:
     enough = sum(share >= 0.9 and result.result == "SUCCESS" for share, result in zip(shares, results, strict=True))
     return [
         *_rows("explore in yards: home again", results, ">= 95"),
-        BenchRow("  covered 90 % and home", 100.0 * enough / RUNS, "%", ">= 95", f"least {min(shares):.3f}"),
+        BenchRow("  covered 90 % and home", 100.0 * enough / YARDS, "%", ">= 95", f"least {min(shares):.3f}"),
         BenchRow("  deepest outside the rectangle", max(0.0, -worst_m), "m", "0"),
     ]
 
@@ -89,8 +93,28 @@ def objects(folder: Path) -> list[BenchRow]:
     return [*_rows("investigate: objects circled", results, "100"), farthest]
 
 
-def run() -> list[BenchRow]:
-    """All three, one after the other."""
+def walls(folder: Path) -> list[BenchRow]:
+    """Wall follow around houses and inside rooms, with bays, doors, posts and boxes: how well the camera kept its distance."""
+    results, keeps = [], []
+    for seed in range(3000, 3000 + BUILDINGS):
+        building, platform, side = Building.for_seed(seed)
+        wall = load_robot_file(platform).wall
+        runner = play(folder, f'<WallFollow side="{side}" length_m="{1.1 * building.way_m:.1f}"/>', building.text, 600.0)
+        results.append(runner.result)
+        keeps.append(kept(runner.system.track.points, wall, side, building.edges, wall.distance_m))
+    at_corners = sorted(keep.corner_m for keep in keeps)
+    return [
+        *_rows("wall follow: once around", results, ">= 95"),
+        BenchRow("  camera off its distance beside straight walls", max(keep.straight_m for keep in keeps), "m", "<= 0.15", "the farthest of all"),
+        BenchRow("  at corners, doors and posts", at_corners[len(at_corners) // 2], "m", "<= 0.4", f"median run; the farthest {at_corners[-1]:.2f}"),
+    ]
+
+
+def run() -> Iterator[BenchRow]:
+    """All of them, one after the other."""
+    yield from patrols.run()
+    yield from lone_things.run()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        return [*towns(folder), *yards(folder), *objects(folder)]
+        for part in (towns, yards, objects, walls):
+            yield from part(folder)

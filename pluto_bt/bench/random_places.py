@@ -54,6 +54,19 @@ def wood(rng: Rng, people: int = 0) -> World:
     return World("wood", shapes=tuple(shapes), actors=_people(rng, people, side_m, side_m))
 
 
+def lone_thing(rng: Rng) -> World:
+    """A wide fenced field with one thing in its middle: a post, a box, a parked car, or two metres of wall."""
+    kind, turn_rad = int(rng.integers(4)), float(rng.uniform(-math.pi, math.pi))
+    dx, dy = math.cos(turn_rad), math.sin(turn_rad)
+    thing = (
+        _post("post", 0.0, 0.0, float(rng.uniform(0.03, 0.6))),
+        _box(rng, "box", 0.0, 0.0, 0.3, 1.2),
+        _box(rng, "car", 0.0, 0.0, 1.8, 4.2, turn_rad),
+        _wall("wall", [(-dx, -dy), (dx, dy)]),
+    )[kind]
+    return World("one thing", shapes=(_wall("fence", [(-9, -9), (9, -9), (9, 9), (-9, 9), (-9, -9)]), thing))
+
+
 PLACES: dict[str, Callable[[Rng, int], World]] = {"rooms": rooms, "street": street, "wood": wood}
 
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from pluto_bt.bench.killed import killed_times_s
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.maps.world import At, FaultAction, Shape, World
@@ -20,7 +21,7 @@ from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.system import Options, System
 
 TRIALS = 1000
-TRIAL_S, JITTER_S, FAULT_S, FIRST_S = 2.4, 0.4, 0.8, 2.0
+TRIAL_S, JITTER_S, FAULT_S, FIRST_S = 1.7, 0.3, 0.6, 2.0
 ORDER_EVERY_S = 0.5
 TWIST = (0.4, 0.25)
 STEP_S = 0.01
@@ -167,4 +168,5 @@ def row_of(name: str, times_s: list[float], limit_s: float) -> BenchRow:
 def run(trials: int = TRIALS) -> list[BenchRow]:
     """All causes."""
     rows = [row_of("bumper", bumper_times_s(trials, 1), 0.1)]
-    return rows + [row_of(cause.name, stop_times_s(cause, trials, 1), cause.limit_s) for cause in CAUSES]
+    rows += [row_of(cause.name, stop_times_s(cause, trials, 1), cause.limit_s) for cause in CAUSES]
+    return [*rows, row_of("software killed: SIGKILL, the base by itself", killed_times_s(trials, 1), 0.3)]

@@ -40,6 +40,7 @@ def corridor(seed: int, anywhere: bool = False, drift_dps: float = DRIFT_DPS) ->
     rng = np.random.default_rng((seed, 4))
     stretch_m = LENGTH_M / MARKERS
     hung = [(rng.uniform(EDGE_M, WIDTH_M - EDGE_M), (i + rng.uniform()) * stretch_m, rng.uniform(-math.pi, math.pi)) for i in range(MARKERS)]
+    hung.append((rng.uniform(EDGE_M, 1.5), START[1] + rng.uniform(-1.0, 1.0), 0.0))  # without one in sight it would not even start
     return replace(world, markers=tuple(Marker(i, float(x), float(y), float(theta)) for i, (x, y, theta) in enumerate(hung)))
 
 

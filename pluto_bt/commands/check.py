@@ -105,7 +105,7 @@ def _is_world(path: Path) -> bool:
 
 
 def _print(args: argparse.Namespace, faults: Faults, legs: list[LegTold]) -> None:
-    found = list(faults.in_order())
+    found = list(dict.fromkeys(faults.in_order()))  # a file that several missions include is told once
     if args.format == "json" and args.world is not None:
         print(json.dumps({"faults": [fault.as_json() for fault in found], "legs": [leg.as_json() for leg in legs]}, ensure_ascii=False))
     elif found or args.format in ("json", "sarif"):

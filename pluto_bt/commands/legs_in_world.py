@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pluto_bt.maps.clearance import path_is_clear
+from pluto_bt.commands.ways_in_world import Ways
+from pluto_bt.maps.clearance import Blocked, path_is_clear
 from pluto_bt.maps.geometry import Pose, transform_points
 from pluto_bt.maps.platform import Limits
-from pluto_bt.maps.rough_way import RoughWays
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import At, Put, Remove, Shape, When, World
 from pluto_bt.modules.robot_file import RobotFile
@@ -58,12 +58,17 @@ class LegCheck:
         self._scene = Scene(replace(self._world, shapes=solid))
         self._forbidden = Scene(World("forbidden", shapes=_forbidden_shapes(world)))
         self._area = MapArea.of(world)
+        self._has_eyes = robot.devices.laser is not None or robot.devices.sonar is not None
+        # a script that takes things away or puts them elsewhere may open ways that are not there at the start
         self._changes = any(isinstance(action, (Remove, Put)) for entry in world.script for action in _actions(entry))
-        self._ways: RoughWays | None = None
+        self._ways: Ways | None = None
+        self._lost: set[Point] = set()  # goals that cannot be reached
         self._told: set[tuple[Place, str]] = set()  # a leg in a loop is told once
 
     def run(self, legs: Sequence[Leg]) -> list[LegTold]:
         """Check all legs; their faults stand at the goals. What is told: each leg of known start, and goals that are in none of these."""
+        places = [place for leg in legs for place in (leg.start, self._point(leg)) if place is not None]
+        self._ways = Ways(self._world, self._robot, self._robot.plan, places)
         told = [one for leg in legs if (one := self._leg(leg)) is not None]
         reached = [one.goal for one in told if one.start is not None]
         return [one for one in told if one.start is not None or one.goal not in reached]
@@ -73,8 +78,10 @@ class LegCheck:
         if goal is None:
             return None
         name = f"{leg.plan.type_name}" + (f' "{leg.plan.name}"' if leg.plan.name != leg.plan.type_name else "")
-        start = leg.start
+        start = leg.start if leg.start not in self._lost else None  # the robot will not be there
         is_sound = self._check_goal(leg, start, goal)
+        if not is_sound:
+            self._lost.add(goal)
         if start is None:
             return LegTold(name, None, goal, None, None)
         length_m = math.dist(start, goal)
@@ -106,7 +113,9 @@ class LegCheck:
         for scene, code, what in ((self._scene, "goal-blocked", "cannot stand"), (self._forbidden, "forbidden", "must not be")):
             hit = self._hit_at(scene, at)
             if hit:
-                self._error(leg, code, f"the robot {what} at {shown}", "a free place", f'"{hit}" is there', "choose a goal further away from it")
+                what, mend = f"the robot {what} at {shown}", "choose a goal further away from it"
+                may_be_free = self._changes and scene is self._scene
+                self._error(leg, code, what, "a free place", f'"{hit}" is there', mend, is_warning=may_be_free)
                 return False
         return True
 
@@ -136,37 +145,41 @@ class LegCheck:
         theta = math.atan2(goal[1] - start[1], goal[0] - start[0])
         line: tuple[Pose, Pose] = ((*start, theta), (*end, theta))
         if leg.way == "straight" and not self._area.has_line(*start, *goal):
-            where = f"{_shown(start)} → {_shown(goal)}"
-            self._error(leg, "outside-map", "the straight way leaves the mapped area", "a way inside", where, "give a goal between")
+            where = f"{_shown(start)} → {_shown(goal)}"  # who has no eyes is held by that area alone
+            what = "the straight way leaves the mapped area"
+            self._error(leg, "outside-map", what, "a way inside", where, "give a goal between", is_warning=self._has_eyes)
             return straight_m
         blocked, banned = path_is_clear(self._scene, self._outline, line), path_is_clear(self._forbidden, self._outline, line)
-        if blocked is None and banned is None:
+        if blocked is None and banned is None and leg.way != "planned":
             return straight_m
         if leg.way == "straight" and banned is not None:
             found = f'"{banned.nearest.owner}" at {_shown(banned.pose_map_robot)}'
             self._error(leg, "forbidden", "the straight way leads through what is forbidden", "an allowed way", found, "give a goal between")
-        around_m = self._rough_ways().length_m(start, goal)
-        if around_m is not None and math.isinf(around_m):
-            found = blocked.nearest.owner if blocked is not None else banned.nearest.owner if banned is not None else ""
-            what = f"there is no way from {_shown(start)} to {_shown(goal)}"
-            # the world's script may open a way
-            self._error(leg, "no-way", what, "a goal that can be reached", f'"{found}" is in between', is_warning=self._changes)
-        elif leg.way == "straight" and blocked is not None:
-            self._tell_blocked(leg, blocked.nearest.owner, blocked.pose_map_robot)
+        around_m = self._length_around_m(leg, start, goal, blocked or banned)
+        if blocked is not None and leg.way == "straight" and around_m != math.inf:
+            self._tell_blocked(leg, blocked)
         return straight_m if around_m is None else max(straight_m, around_m)
 
-    def _tell_blocked(self, leg: Leg, owner: str, pose: Pose) -> None:
-        has_eyes = self._robot.devices.laser is not None or self._robot.devices.sonar is not None
-        mend = "it steers round single things; for a way round a building use MoveTo, or goals between" if has_eyes else "give a goal between"
-        found = f'"{owner}" in front of {_shown(pose)}'
-        # who sees nothing drives into it
-        self._error(leg, "leg-blocked", f"the straight way of <{leg.plan.type_name}> is blocked", "a free way", found, mend, is_warning=has_eyes)
+    def _length_around_m(self, leg: Leg, start: Point, goal: Point, hit: Blocked | None) -> float | None:
+        """The length of a planned way, infinite and a fault where there is none; None where that is not sure."""
+        ways = self._ways
+        assert ways is not None  # run() has made it
+        if not (ways.is_drawn(start) and ways.is_drawn(goal)):
+            return None
+        around_m = ways.length_m(start, goal, leg.tolerance_m)
+        if around_m is not None or not (leg.way == "planned" or ways.is_cut_off(start, goal)):
+            return around_m
+        self._lost.add(goal)
+        what = f"there is no way from {_shown(start)} to {_shown(goal)}" + (f" that is {ways.width_m:.2f} m wide" if leg.way == "planned" else "")
+        found = f'"{hit.nearest.owner}" is in between' if hit is not None else "it is too narrow"
+        self._error(leg, "no-way", what, "a goal that can be reached", found, is_warning=self._changes)
+        return math.inf
 
-    def _rough_ways(self) -> RoughWays:
-        if self._ways is None:
-            keep_out = self._forbidden if len(self._forbidden.owners) > 1 else None
-            self._ways = RoughWays(self._world, self._scene, inner_radius_m(self._outline), keep_out)
-        return self._ways
+    def _tell_blocked(self, leg: Leg, hit: Blocked) -> None:
+        round_it = "it steers round single things; for a way round a building use MoveTo or NavigateTo, or goals between"
+        what, mend = f"the straight way of <{leg.plan.type_name}> is blocked", round_it if self._has_eyes else "give a goal between"
+        found = f'"{hit.nearest.owner}" in front of {_shown(hit.pose_map_robot)}'
+        self._error(leg, "leg-blocked", what, "a free way", found, mend, is_warning=self._has_eyes)  # who sees nothing drives into it
 
     def _error(self, leg: Leg, code: str, message: str, expected: str, found: str, mend: str = "", is_warning: bool = False) -> None:
         if (leg.place, code) not in self._told:
@@ -182,14 +195,6 @@ def drive_time_s(length_m: float, speed_mps: float, limits: Limits) -> float:
     if length_m >= ramps_m:
         return length_m / v + v / 2.0 * (1.0 / up + 1.0 / down)
     return math.sqrt(2.0 * length_m * (1.0 / up + 1.0 / down))
-
-
-def inner_radius_m(outline_m: np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> float:
-    """Radius of the largest disc round the robot's origin inside its outline: where that does not pass, nothing does."""
-    ends = np.roll(outline_m, -1, axis=0)
-    along = ends - outline_m
-    share = np.clip(-np.sum(outline_m * along, axis=1) / np.sum(along**2, axis=1), 0.0, 1.0)
-    return float(np.min(np.linalg.norm(outline_m + share[:, None] * along, axis=1)))
 
 
 def _short_of(start: Point | None, goal: Point, tolerance_m: float) -> Point:

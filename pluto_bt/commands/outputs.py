@@ -16,6 +16,10 @@ def check_outputs(args: argparse.Namespace, faults: Faults) -> None:
     """A fault for each file that could not be written, and for `--speed` without `--realtime`."""
     _check(args.plot, "--plot", (".png", ".svg"), faults)
     _check(args.trace, "--trace", (), faults)
+    _check(args.journal, "--journal", (), faults)
+    if args.journal is not None and args.resume is None:
+        what, mend = "--journal goes with --resume", "add --resume hold, or drop --journal"
+        faults.error(Place(f"--journal {args.journal}"), "bad-option", what, expected="--resume", found="--journal alone", mend=mend)
     _check(args.record, "--record", (".mcap",), faults)
     if args.record is not None and find_spec("mcap") is None:
         mend = "pip install 'pluto_bt[record]'"

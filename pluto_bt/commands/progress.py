@@ -5,28 +5,45 @@ from __future__ import annotations
 import math
 import os
 import shutil
-from typing import IO
+from typing import IO, Any
 
 from pluto_bt.blackboard.messages import Event
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import wall_ns
 from pluto_bt.system import System
+from pluto_bt.trees import Mission
 
 LIVE_EVERY_NS = 100_000_000
 PLAIN_EVERY_S = 60.0
 
 
+def is_terminal(stream: IO[str]) -> bool:
+    """Whether what is drawn there can be drawn over."""
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
+
+
+def make_progress(stream: IO[str], watch: bool) -> Progress:
+    """What `pluto run` shows; the tree too if it is to be watched."""
+    if not watch:
+        return Progress(stream)
+    from pluto_bt.commands.watch import LiveTree, ToldTree
+
+    return LiveTree(stream) if is_terminal(stream) else ToldTree(stream)
+
+
 class Progress:
     """Prints to a stream; knows whether that is a terminal."""
 
-    def __init__(self, stream: IO[str], watch: bool = False) -> None:
+    def __init__(self, stream: IO[str]) -> None:
         self._stream = stream
-        self._is_live = stream.isatty() and os.environ.get("TERM") != "dumb"
-        self._watch = watch
+        self._is_live = is_terminal(stream)
         self._begun_ns = 0
         self._shown_ns = 0
         self._next_plain_s = PLAIN_EVERY_S
-        self._drawn_lines = 0
+        self._is_drawn = False
+
+    def attach(self, mission: Mission) -> None:
+        """Told once, before the run, which mission it will be."""
 
     def line(self, text: str) -> None:
         """One whole line, above the live one."""
@@ -59,25 +76,15 @@ class Progress:
         return f"{now_s:8.1f} s  × {now_s / wall_s:<5.0f} {state}  {leaf}  {simulator.velocity[0]:+.2f} m/s{clearance}"
 
     def _draw(self, system: System, now_ns: int) -> None:
-        lines = [self._status(system, now_ns)]
-        active = system.executive.core.active
-        if self._watch and active is not None:
-            from pluto_bt.trees.dump import dump
-
-            lines = [*dump(active.mission, "unicode").splitlines(), *lines]
         self._clear()
-        print("\n".join(line[: self._width()] for line in lines), end="", file=self._stream, flush=True)
-        self._drawn_lines = len(lines)
-
-    def _width(self) -> int:
-        """What a line may have so that it does not wrap."""
-        return shutil.get_terminal_size().columns - 1
+        fits = shutil.get_terminal_size().columns - 1  # what a line may have so that it does not wrap
+        print(self._status(system, now_ns)[:fits], end="", file=self._stream, flush=True)
+        self._is_drawn = True
 
     def _clear(self) -> None:
-        if self._drawn_lines:
-            up = f"\x1b[{self._drawn_lines - 1}A" if self._drawn_lines > 1 else ""
-            print(f"\r{up}\x1b[J", end="", file=self._stream)
-            self._drawn_lines = 0
+        if self._is_drawn:
+            print("\r\x1b[J", end="", file=self._stream)
+            self._is_drawn = False
 
     def end(self, result: RunResult) -> None:
         """The summary."""
@@ -99,8 +106,17 @@ def summary(result: RunResult) -> str:
     if result.final_pose is not None:
         lines.append(f"  ended at   {_pose(result.final_pose)}" + (f", believed {_pose(result.estimated_pose)}" if result.estimated_pose else ""))
     lines += [f"  contact    {_contact(contact)}" for contact in result.contacts[:5]]
+    lines += [f"  contract   {one['name']}: {_kept(one)}" for one in result.contracts]
     lines.append(f"  trace      {result.trace_sha256[:16]}…")
     return "\n".join(lines)
+
+
+def _kept(told: dict[str, Any]) -> str:
+    """How a contract has stood, in a few words."""
+    if not told["breaches"]:
+        return f"{told['verdict']}{': ' + told['problem'] if told['problem'] else ''}"
+    first, count = told["breaches"][0], len(told["breaches"])
+    return f"broken at {first['broken_s']:.1f} s" + (f" and {count - 1} times more" if count > 1 else "")
 
 
 def _metres(value: float | None) -> str:

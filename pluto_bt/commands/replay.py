@@ -23,7 +23,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--at", metavar="T", help="the tree and the blackboard at this time of the run (s)")
     parser.add_argument("--step", action="store_true", help=f"go through it by hand: {KEYS}")
     parser.add_argument("--execute", action="store_true", help="run the real tree on the recorded inputs and tell the first tick that differs")
-    parser.add_argument("--mission", metavar="M.xml", help="with --execute: run this mission instead, such as a newer version of it")
+    parser.add_argument("--contracts", action="store_true", help="check the mission's contracts over the run; exit 1 if one is broken")
+    parser.add_argument("--mission", metavar="M.xml", help="with --execute, --contracts: take this mission, such as a newer version of it")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_box, read_time
 
@@ -33,6 +34,8 @@ def main(argv: list[str]) -> int:
     box = read_box(args.file)
     if args.execute:
         return execute(box, args.mission)
+    if args.contracts:
+        return contracts(box, args.mission)
     if args.step:
         return step(box, at_s or 0.0)
     if at_s is not None:
@@ -70,6 +73,27 @@ def execute(box: Box, mission: str | None = None) -> int:
     cut = "" if ticks == len(box) else f"; the recorded inputs end there, {len(box) - ticks} ticks before the file does"
     print(f"{ticks} ticks executed again, all identical{cut}")
     return 0
+
+
+def contracts(box: Box, mission: str | None) -> int:
+    """The contracts over the run."""
+    from pluto_bt.contract_report import check_box
+    from pluto_bt.trees.loader.contracts import contracts_in
+
+    with box.unpacked() as files:
+        path = Path(mission) if mission is not None else files / box.run.mission
+        found = contracts_in(path, mission or box.run.mission)
+    if not found:
+        print(f"{mission or box.run.mission} has no contracts")
+        return 0
+    kept = check_box(box, found)
+    for one in kept:
+        told = one.as_json()
+        print(f"{told['verdict']:<10} {told['name']}: {told['always']}" + (f" (never judged: {told['problem']})" if told["problem"] else ""))
+        for breach in one.breaches:
+            end = "to the end" if breach.until_s is None else f"to {breach.until_s:.2f} s"
+            print(f"           did not hold from {breach.since_s:.2f} s {end}, broken at {breach.broken_s:.2f} s")
+    return 1 if any(one.breaches for one in kept) else 0
 
 
 def step(box: Box, at_s: float) -> int:

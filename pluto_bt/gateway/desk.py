@@ -122,6 +122,9 @@ class Desk:
                 return inquiries.newest(port, request.topic)
             case requests.ShowTree():
                 return inquiries.tree(port, request.format)
+            case requests.Why():
+                is_moving, causes = port.why(request.at)
+                return replies.Why(is_moving=is_moving, causes=tuple(causes))
             case requests.ShowModules():
                 return replies.Modules(state=port.modules())
             case requests.ModuleOp():

@@ -9,7 +9,7 @@ from pluto_bt.gateway.desk import Desk
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
-from pluto_bt.gateway.requests import Get, Log, ShowModules, ShowTree
+from pluto_bt.gateway.requests import Get, Log, ShowModules, ShowTree, Why
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Stamped, Up, Watch, Welcome, pack_value
 
 REQUESTS_A_STEP = 64
@@ -109,4 +109,4 @@ class Exchange:
 
 
 def _is_inquiry_of(clients: set[int], frame: Up) -> bool:
-    return isinstance(frame, Ask) and frame.client in clients and isinstance(frame.request, Get | ShowTree | ShowModules | Log)
+    return isinstance(frame, Ask) and frame.client in clients and isinstance(frame.request, Get | ShowTree | ShowModules | Log | Why)

@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple, Protocol
 import msgspec
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, Message, MissionState, ModulesState
+from pluto_bt.gateway.replies import Cause
 from pluto_bt.source import PlutoError
 
 OnLoss = Literal["stop", "pause", "continue"]
@@ -97,6 +98,9 @@ class RobotPort(Protocol):
 
     def tree_text(self, format: str) -> str:
         """The tree drawn as `ascii` or `dot`; "" if there is none."""
+
+    def why(self, at_s: float | None) -> tuple[bool, Sequence[Cause]]:
+        """Whether the robot moves, and the chain of causes, the first cause first. Raises: RefusedError for a time that is not known (any more)."""
 
     def modules(self) -> ModulesState:
         """Every module of the run."""

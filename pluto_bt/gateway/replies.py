@@ -119,6 +119,24 @@ class Modules(Reply, frozen=True, kw_only=True):
     state: ModulesState
 
 
+class Cause(msgspec.Struct, frozen=True):
+    """One link of the chain of causes; `since_s` = second of the run, `age_s` = of what it is read from."""
+
+    layer: str
+    code: str
+    text: str
+    since_s: float
+    age_s: float = 0.0
+    unblock: str = ""
+
+
+class Why(Reply, frozen=True, kw_only=True):
+    """Why the robot is, or is not, moving, the first cause first."""
+
+    is_moving: bool
+    causes: tuple[Cause, ...]
+
+
 class LogLine(Reply, frozen=True, kw_only=True):
     """One event for operators."""
 
@@ -150,7 +168,7 @@ class Value(Reply, frozen=True, kw_only=True):
 
 
 AnyReply: TypeAlias = (
-    Hello | Pong | Ok | Error | LeaseState | Ack | Progress | Result | Mission | Tree | Modules | LogLine | Description | Value
+    Hello | Pong | Ok | Error | LeaseState | Ack | Progress | Result | Mission | Tree | Modules | Why | LogLine | Description | Value
 )
 
 
@@ -183,6 +201,15 @@ def _mission(reply: Mission) -> str:
 def _tree(reply: Tree) -> str:
     body = "".join(row("node", node) for node in reply.nodes) or escape(reply.text)
     return _with_id(reply, "tree", {"tick": reply.tick, "format": reply.format}, body)
+
+
+def _why(reply: Why) -> str:
+    return _with_id(reply, "why", {"moving": reply.is_moving}, "".join(map(_cause, reply.causes)))
+
+
+def _cause(cause: Cause) -> str:
+    shown: dict[str, Attribute] = {"layer": cause.layer, "code": cause.code, "text": cause.text, "unblock": cause.unblock}
+    return element("cause", {**shown, "since": _seconds(cause.since_s), "age": f"{cause.age_s:.3f}"})
 
 
 def _event(reply: LogLine) -> str:
@@ -233,6 +260,8 @@ def _text(reply: AnyReply) -> str:  # one case a message: longer than a screen o
             return _tree(reply)
         case Modules():
             return _with_id(reply, "modules", {}, "".join(row("module", module) for module in reply.state.modules))
+        case Why():
+            return _why(reply)
         case LogLine():
             return _event(reply)
         case Description():

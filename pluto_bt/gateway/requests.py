@@ -127,6 +127,12 @@ class ShowTree(Request, frozen=True, kw_only=True):
     format: Literal["xml", "ascii", "dot"] = "xml"
 
 
+class Why(Request, frozen=True, kw_only=True):
+    """Why the robot is, or is not, moving; `at` = at this second of the run."""
+
+    at: Annotated[float, Meta(ge=0.0, le=1e9)] | None = None
+
+
 class ShowModules(Request, frozen=True, kw_only=True):
     """Every module."""
 
@@ -151,13 +157,13 @@ class Bye(Request, frozen=True, kw_only=True):
 
 AnyRequest: TypeAlias = (
     SayHello | Ping | Describe | Get | Subscribe | Unsubscribe | Lease | Command | Run | Cancel | Stop | Estop | Release
-    | MissionOp | ShowTree | ShowModules | ModuleOp | Log | Bye
+    | MissionOp | ShowTree | Why | ShowModules | ModuleOp | Log | Bye
 )  # fmt: skip
 
 ELEMENTS: dict[str, type[Any]] = {
     "hello": SayHello, "ping": Ping, "describe": Describe, "get": Get, "subscribe": Subscribe, "unsubscribe": Unsubscribe, "lease": Lease,
     "command": Command, "run": Run, "cancel": Cancel, "stop": Stop, "estop": Estop, "release": Release, "mission": MissionOp,
-    "tree": ShowTree, "modules": ShowModules, "module": ModuleOp, "log": Log, "bye": Bye,
+    "tree": ShowTree, "why": Why, "modules": ShowModules, "module": ModuleOp, "log": Log, "bye": Bye,
 }  # fmt: skip
 
 

@@ -160,6 +160,16 @@ class Put:
 
 
 @dataclass(frozen=True, slots=True)
+class Carry:
+    """`<place>` with the robot's name: somebody lifts the robot and sets it down there; its wheels notice nothing. theta None = as it stood."""
+
+    x_m: float
+    y_m: float
+    theta_rad: float | None = None
+    place: Place = NOWHERE
+
+
+@dataclass(frozen=True, slots=True)
 class FaultAction:
     """A device or a part of the software fails. `for_s` 0 = for ever; the other numbers as the kind needs (docs/worlds.md)."""
 
@@ -182,7 +192,7 @@ class SetTopic:
     place: Place = NOWHERE
 
 
-Action = Remove | Put | FaultAction | SetTopic
+Action = Remove | Put | Carry | FaultAction | SetTopic
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +233,7 @@ class World:
     terrains: tuple[Terrain, ...] = ()
     robot: RobotStart = field(default_factory=RobotStart)
     script: tuple[At | When, ...] = ()
-    files: tuple[str, ...] = field(default=(), compare=False)
+    files: tuple[str, ...] = field(default=(), compare=False, repr=False)
 
     def bounds_m(self) -> tuple[float, float, float, float]:
         """(x_min, y_min, x_max, y_max) of everything drawn, for pictures and acceleration structures."""

@@ -17,6 +17,7 @@ class Ids:
 
     def __init__(self, faults: Faults) -> None:
         self._faults = faults
+        self.robot = "robot"  # its name; a script may place it
         self._places: dict[Group, dict[str, Place]] = {"obstacle": {}, "region": {}, "line": {}, "goal": {}, "marker": {}}
 
     def take(self, group: Group, name: str, place: Place) -> None:
@@ -39,6 +40,10 @@ class Ids:
             name += f":{place.column}"
         self.take(group, name, place)
         return name
+
+    def is_robot(self, name: str) -> bool:
+        """True if nothing but the robot has this name."""
+        return name == self.robot and name not in self._places["obstacle"]
 
     def check(self, groups: tuple[Group, ...], name: str, place: Place, what: str) -> None:
         """A fault if nothing in these groups is called `name`."""

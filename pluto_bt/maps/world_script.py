@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pluto_bt.maps import fault_table
 from pluto_bt.maps.fields import Fields
-from pluto_bt.maps.world import Action, At, FaultAction, Put, Remove, SetTopic, When
+from pluto_bt.maps.world import Action, At, Carry, FaultAction, Put, Remove, SetTopic, When
 from pluto_bt.maps.world_ids import Ids
 from pluto_bt.source import Faults, XmlElement, did_you_mean
 
@@ -63,7 +63,9 @@ def _target(fields: Fields, ids: Ids) -> str:
     return name
 
 
-def _put(fields: Fields, ids: Ids) -> Put:
+def _put(fields: Fields, ids: Ids) -> Put | Carry:
+    if ids.is_robot(fields.text("id")):
+        return Carry(fields.number("x"), fields.number("y"), fields.angle_rad("theta_deg") if fields.has("theta_deg") else None, fields.place)
     name = _target(fields, ids)
     if fields.has("x") or fields.has("y"):
         return Put(name, fields.number("x"), fields.number("y"), fields.place)

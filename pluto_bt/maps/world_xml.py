@@ -122,6 +122,7 @@ class _WorldReading:
         if fields.has("x") or fields.has("y") or fields.has("theta_deg"):
             pose = (fields.number("x"), fields.number("y"), fields.angle_rad("theta_deg"))
         if not second:
+            self._ids.robot = name
             self._found.robot = RobotStart(name, platform, pose, ideal, fields.place)
         fields.done()
 

@@ -17,6 +17,7 @@ from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.verdict import Verdict
 from pluto_bt.skills.wall_parameters import WallParameters
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
@@ -37,7 +38,7 @@ class Avoid:
         self._drive_status, self._drive_command = below(context, "drive")
         self._pose, self._dead = newest(context, "Localization/Pose"), newest(context, DEAD_RECKONING)
         self._raw, self._sonar = newest(context, "ATRV2/Drive/Raw"), newest(context, "ATRV2/Sonar")
-        self._scan = newest(context, "sick/scan")
+        self._scan, self._check = newest(context, "sick/scan"), newest(context, "Localization/Check")
         self._view: ScanView | None = None
         self._sent: ActuatorState | None = None
 
@@ -67,7 +68,7 @@ class Avoid:
             self._skill.accept(letter.command, now_s)
         status: FVectorState | None = self._drive_status()
         has_it = letter is None and self._drive_has_it()  # a goto posts anew in each cycle, so ask before: drive tells of the last cycle's
-        command = self._skill.step(now_s, self._senses(now_s, STILL if status is None else status.data))
+        command = self._skill.step(now_s, self._senses(now_s, status))
         if command is not None:
             if letter is None and self._sent is not None and status is not None and status.element[0] in BUMPERS:
                 command = msgspec.structs.replace(command, stamp_s=self._sent.stamp_s)  # no new order: that would open the bumper's latch
@@ -91,12 +92,17 @@ class Avoid:
     def _halt(self, now_s: float) -> None:
         self._drive.stop("avoid", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
 
-    def _senses(self, now_s: float, data: tuple[float, ...]) -> AvoidSenses:
+    def _senses(self, now_s: float, drive: FVectorState | None) -> AvoidSenses:
+        data, waits = (STILL, False) if drive is None else (drive.data, drive.reason == reasons.WALKER)
         oldest_s = now_s - self._parameters.pose_stale_s
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
-        return AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar())
+        check: FVectorState | None = self._check()
+        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), waits)
+        if check is None or check.reason not in (reasons.LOST, reasons.NO_POSE):
+            return senses
+        return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))
 
     def _newest_view(self) -> ScanView | None:
         """The newest scan with the place it was taken from, worked out once."""

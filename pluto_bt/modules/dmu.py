@@ -10,6 +10,7 @@ from msgspec import Meta
 
 from drivers.records import InertialRecord
 from estimation.gyro_bias import BiasNews, GyroBias
+from estimation.gyro_rest import GyroRest
 from estimation.inertial import InertialHeading
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
 from pluto_bt.modules.context import Context
@@ -40,20 +41,39 @@ class Dmu(Relay[InertialRecord]):
         self._command = context.board.reader("ATRV2/Drive/Command")
         self.bias = GyroBias(p.bias_samples, math.radians(p.max_bias_spread_dps))
         self.heading = InertialHeading(p.filter_s)
+        self._rest: GyroRest | None = None
+        self._stamp_s = 0.0
         self._has_told = False
         self._still_turn_radps = math.radians(p.still_turn_rate_dps)
 
     def step(self, now_s: float) -> None:
         """Publish each sample that has arrived, both ways."""
         for record in self.read():
-            if not self.bias.known:
-                self._tell(self.bias.add(record.turn_rates_radps[2], self._is_still()))
             x, y, z = record.turn_rates_radps
-            bias = self.bias.bias_radps
+            is_still = self._is_still()
+            if not self.bias.known:
+                self._tell(self.bias.add(z, is_still))
+            bias = self.bias.bias_radps if self._rest is None else self._rest.bias_radps
+            before_rad = self.heading.theta_rad
             rates, accelerations = self.heading.step(record.stamp_s, (x, y, z - bias), record.accelerations_mps2, record.phi_rad, record.psi_rad)
+            self._look_at_rest(record.stamp_s, z, before_rad, is_still)
             self._publisher.put(imu_state(record), now_s)
             stamp_s, theta = record.stamp_s - self.heading.delay_s, self.heading.theta_rad
             self._state.put(ImuState(stamp_s, theta, record.phi_rad, record.psi_rad, rates, accelerations, bias, self.bias.known), now_s)
+
+    def _look_at_rest(self, stamp_s: float, rate_radps: float, before_rad: float, is_still: bool) -> None:
+        """Once the bias is known: find it anew whenever the robot stands, and turn nothing meanwhile."""
+        dt_s, self._stamp_s = stamp_s - self._stamp_s, stamp_s
+        if self._rest is None:
+            if self.bias.known:
+                self._rest = GyroRest(self.bias.bias_radps, self.bias.spread_radps, self._parameters.bias_samples)
+            return
+        was_radps = self._rest.bias_radps
+        self.heading.theta_rad = before_rad + self._rest.step(dt_s, rate_radps, self.heading.theta_rad - before_rad, is_still)
+        if self._rest.jumped:
+            now, was = math.degrees(self._rest.bias_radps), math.degrees(was_radps)
+            text = f"the robot stands and the gyro shows {now:.2f} deg/s: its bias, {was:.2f} deg/s till now"
+            self._say("warning", "gyro-bias-changed", "dmu", text)
 
     def _is_still(self) -> bool:
         """True if the wheels say so and nothing else is commanded; without any word from the wheels it is not known, so False."""

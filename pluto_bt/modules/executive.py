@@ -9,9 +9,12 @@ import msgspec
 
 from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, ModuleState, Pose, TreeState
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.contract_guardian import ContractGuardian
 from pluto_bt.modules.job_runner import JobRunner
+from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.tick_log import TickLog
 from pluto_bt.runtime.supervision import Part
+from pluto_bt.trees.contracts import Kept
 from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
 
@@ -32,12 +35,15 @@ class Executive:
         self._pose = board.reader("Localization/Pose")
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
+        self.on_ticked: Callable[[list[Activity]], None] | None = None  # a monitor that looks on
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
         self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
         self._shown_statuses = ""
         self._steps = 0
         self._own_clock = context.own_clock
+        self.keeper: JournalKeeper | None = None
+        self._guardian = ContractGuardian(context, self.core)
         self._log = TickLog(context, self.core, context.black_box) if context.black_box is not None else None
 
     def start(self, now_s: float) -> None:
@@ -61,6 +67,11 @@ class Executive:
         lines = [activity.mission.status_line() for activity in ticked]
         if ticked:
             self._show_trees(ticked, lines, now_s)
+            if self.on_ticked is not None:
+                self.on_ticked(ticked)
+            self._guardian.look(ticked, now_s)
+        if self.keeper is not None:
+            self._keep(self.keeper, ticked, lines, now_s)
         if self._log is not None:
             self._log.step(now_s, ticked, lines)
         else:
@@ -77,6 +88,30 @@ class Executive:
             event = self._waiting.popleft()
             self._events.put(event, now_s)
             self.on_event(event)
+
+    def _keep(self, keeper: JournalKeeper, ticked: list[Activity], lines: list[str], now_s: float) -> None:
+        """The journal of the mission; it ends with the mission, or when another one takes its place."""
+        activity = self.core.mission
+        if activity is None:
+            return
+        is_its = activity.mission is keeper.mission
+        if is_its and activity in ticked:
+            keeper.after_tick(now_s, activity.ticks, lines[ticked.index(activity)])
+        if not is_its or activity.is_over:
+            keeper.end()
+            self.keeper = None
+        else:
+            keeper.look(now_s)
+
+    @property
+    def contracts(self) -> list[Kept]:
+        """How the contracts of the mission have stood."""
+        return self._guardian.kept
+
+    def note_end(self, now_s: float) -> None:
+        """The run is over: note how things stand, also if the executive itself hangs."""
+        if self._log is not None:
+            self._log.step(now_s, [], [], is_end=True)
 
     def _show_trees(self, ticked: list[Activity], lines: list[str], now_s: float) -> None:
         """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""

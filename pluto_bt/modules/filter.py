@@ -34,6 +34,7 @@ class Filter:
         self._raw, self._bumper = newest(context, "ATRV2/Drive/Raw"), newest(context, "ATRV2/Bumper")
         self._dead, self._pose = newest(context, DEAD_RECKONING), newest(context, "Localization/Pose")
         self._scan_topic, self._sonar_topic = newest(context, "sick/scan"), newest(context, "ATRV2/Sonar")
+        self._check, self._was_lost = newest(context, "Localization/Check"), False
         self._scan: LaserScan | None = None
         self._laser: tuple[Planar | None, float] = (None, 0.0)
         self._sonar: SonarState | None = None
@@ -63,6 +64,7 @@ class Filter:
         if letter is not None:
             self._wanted, self._commanded_s = STILL if letter.is_stop else letter.command.velocity, now_s
         senses = self._senses()
+        self._forget_if_lost()
         if now_s > self._stepped_s:  # two commands of one moment need one look
             self.skill.look(now_s, senses)
         self._stepped_s = now_s
@@ -73,6 +75,14 @@ class Filter:
         else:
             self._base.post("filter", ActuatorState(now_s, 0, (0.0, 0.0), out))
         self._status.put(self.skill.status(now_s), now_s)
+
+    def _forget_if_lost(self) -> None:
+        """Carried to another place, what was seen round the robot is not there."""
+        check = self._check()
+        is_lost = check is not None and check.reason == reasons.LOST
+        if is_lost and not self._was_lost:
+            self.skill.forget()
+        self._was_lost = is_lost
 
     def _held(self, letter: Letter | None, now_s: float) -> Verdict | None:
         """Why nothing passes, whatever the sensors say."""

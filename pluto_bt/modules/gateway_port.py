@@ -12,9 +12,12 @@ import msgspec
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
 from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.gateway.replies import Cause
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
+from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
+from pluto_bt.skills.reasons import STOPPED
 from pluto_bt.trees import Mission, MissionError
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
@@ -39,6 +42,7 @@ class GatewayPort:
         self._loaded: Mission | None = None
         self._errands: dict[str, Errand] = {}
         self._latch = context.latch
+        self.why_watch = WhyWatch(context)
 
     @property
     def name(self) -> str:
@@ -69,7 +73,7 @@ class GatewayPort:
     def estop(self, source: str, reason: str) -> None:
         """As stop, latched until released."""
         self._latch.set(ESTOP, reason or "emergency stop")
-        self.stop(source)
+        self._system.operator_stop(source, ESTOP)
         self._system.say("error", ESTOP, source, f"emergency stop: {reason or 'no reason given'}")
 
     def release_estop(self, source: str) -> None:
@@ -156,13 +160,13 @@ class GatewayPort:
             self._latch.release(OPERATOR_STOP)
             core.start(self._loaded)
         elif op == "abort":
-            core.abort("operator")
+            core.abort(STOPPED)
         elif op in OPS_OF_STATE:
             if op == "resume":
                 self._refuse_if_latched()
             if self.mission_state().state != OPS_OF_STATE[op]:
                 raise RefusedError("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
-            core.pause("operator") if op == "pause" else self._system.operator_resume()
+            core.pause(OPERATOR_STOP) if op == "pause" else self._system.operator_resume()
         else:
             raise RefusedError("invalid", f'mission op="{op}" is not offered')
 
@@ -172,6 +176,10 @@ class GatewayPort:
 
         active = self._system.executive.core.active
         return "" if active is None else dump(active.mission, format)
+
+    def why(self, at_s: float | None) -> tuple[bool, Sequence[Cause]]:
+        """The chain of causes."""
+        return self.why_watch.answer(at_s, self.now_s())
 
     def modules(self) -> ModulesState:
         """Every module of the run."""

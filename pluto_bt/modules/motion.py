@@ -57,9 +57,11 @@ class Motion:
             self._pass_down(self._skill.accept(letter.command, now_s, self._where(now_s)))
             self._order()
         self._work_for_the_job(now_s)
-        if self._sent is not None and self._avoid_command() == self._sent:
+        status: FVectorState | None = self._avoid_status()
+        is_dropped = status is not None and status.element[1] == GotoStatus.STOPPED_THREAD
+        if is_dropped or self._avoid_command() == self._sent:
             self._sent = None
-        self._link.tell(now_s, self._skill.status(now_s, self._avoid_status(), self._sent), None if letter is None else letter.command)
+        self._link.tell(now_s, self._skill.status(now_s, status, self._sent), None if letter is None else letter.command)
 
     def stop(self) -> None:
         """The thread stops and shows -10. Avoidance goes on: stopping motion does not stop it; a job ends."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from estimation.covariance import StepNoise
 from estimation.heading import AbsoluteHeading, GyroHeading, HeadingSource, WheelHeading
+from estimation.motion_check import Limits, MotionCheck
 from estimation.odometer import Odometer, SignedSpeed
 from estimation.se2 import Pose2, arc
 from estimation.track import LEVEL, Tilt
@@ -85,8 +87,14 @@ class MotionSources:
             self._heading, topic = AbsoluteHeading(context.start_pose[2]), "imu/state"
         else:
             self._heading, topic = GyroHeading(teaches=not is_car), "dmu/state"
+        has_gyro = isinstance(self._heading, GyroHeading) and yaw_enable
         if not yaw_enable:
             self._heading = WheelHeading()
+        laser = devices.laser
+        limits = context.platform.limits
+        able = Limits(limits.max_speed_mps, math.radians(limits.max_turn_rate_dps), laser.max_range_m if laser is not None else 0.0)
+        self.check = MotionCheck(able, wheels_know_turns=not is_car, has_gyro=has_gyro, judges_turns=yaw_enable)
+        self._bias_radps = 0.0
         self._sensor = context.board.reader(topic)
         self._stale_after_s = STALE_AFTER_S[topic]
 
@@ -98,6 +106,7 @@ class MotionSources:
         stamp_s, dt_s, distance_m, wheel_turn_rad = way
         theta_rad, bias_known, tilt = self._theta_at(stamp_s, now_s)
         turn_rad, is_measured = self._heading.turn(dt_s, wheel_turn_rad, theta_rad, bias_known)
+        distance_m, turn_rad = self.check.step(stamp_s, dt_s, distance_m, wheel_turn_rad, turn_rad, is_measured)
         noise = self._noise
         turn_var = noise.gyro_turn_var_rad2(dt_s) if is_measured else noise.wheel_turn_var_rad2(distance_m, wheel_turn_rad)
         return Step(stamp_s, arc(distance_m, turn_rad), noise.distance_var_m2(distance_m), turn_var, tilt)
@@ -111,5 +120,8 @@ class MotionSources:
         if sample is None or not isinstance(sample.value, ImuState) or now_s - sample.value.stamp_s > self._stale_after_s:
             return None, False, LEVEL
         state = sample.value
+        if state.bias_radps != self._bias_radps:
+            self.check.turn.bias_moved(state.bias_radps - self._bias_radps)
+            self._bias_radps = state.bias_radps
         theta_rad = state.theta_rad + state.turn_rates_radps[2] * (stamp_s - state.stamp_s)
         return theta_rad, state.bias_known, (state.phi_rad, state.psi_rad)

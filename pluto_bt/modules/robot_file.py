@@ -18,6 +18,7 @@ from pluto_bt.modules.dmu import DmuParameters
 from pluto_bt.modules.local import LocalParameters
 from pluto_bt.modules.marker import MarkerParameters
 from pluto_bt.modules.record_parameters import RecordParameters
+from pluto_bt.modules.resume_parameters import ResumeParameters
 from pluto_bt.runtime.parameters import build, override
 from pluto_bt.skills.avoid import AvoidParameters
 from pluto_bt.skills.drive import DriveParameters
@@ -47,6 +48,7 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
     alarms: AlarmsParameters = AlarmsParameters()
     marker: MarkerParameters = MarkerParameters()
     record: RecordParameters = RecordParameters()
+    resume: ResumeParameters = ResumeParameters()
 
 
 def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | None = None) -> RobotFile:

@@ -95,8 +95,8 @@ class TickLog:
         self._whole: dict[int, int] = {}  # row of a topic that is kept whole -> sequence number told last
         self._steps = 0
 
-    def step(self, now_s: float, ticked: list[Activity], lines: list[str]) -> None:
-        """Note one step of the executive, if anything happened in it."""
+    def step(self, now_s: float, ticked: list[Activity], lines: list[str], is_end: bool = False) -> None:
+        """Note one step of the executive, if anything happened in it; `is_end`: no step, but how things stand when the run is over."""
         orders = tuple((done.verb, done.run, done.text) for done in self._core.take_done())
         situation = self._watch.look(now_s)
         if not ticked and not orders and situation == self._situation:
@@ -108,7 +108,7 @@ class TickLog:
         self._notebook.note(Tick(
             round(now_s * NS), self._steps, orders, trees, tuple(self._commands), self._seqs(is_key),
             None if pose is None else (pose[0], pose[1], pose[3]),
-            situation if is_key or situation != self._situation else None, is_key,
+            situation if is_key or situation != self._situation else None, is_key, is_end,
         ))  # fmt: skip
         self._commands.clear()
         self._situation = situation

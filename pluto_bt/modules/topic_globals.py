@@ -56,6 +56,11 @@ class TopicGlobals:
         """All names that can be read, without the `@`."""
         return self._getters
 
+    def topic_of(self, name: str) -> str | None:
+        """The topic that a name means, None for a name of no topic."""
+        getter = self._getters.get(name)
+        return None if getter is None else getter[0]
+
     def seq(self, name: str) -> int:
         """How often the topic has been written."""
         view = self.view()

@@ -15,8 +15,9 @@ import msgspec
 
 from pluto_bt.blackboard import TOPICS, Sample
 from pluto_bt.record.codec import decode
-from pluto_bt.record.entries import RUN, STATUS_OF_LETTER, TICK, TREE, NodeRow, Run, Situation, Tick, Tree
+from pluto_bt.record.entries import RUN, STATUS_OF_LETTER, TICK, TREE, NodeRow, Run, Tick, Tree
 from pluto_bt.record.mcap_reader import McapFile, open_mcap
+from pluto_bt.record.trail import Trail
 from pluto_bt.source import Faults, Place
 
 CHECKPOINT_EVERY = 256  # ticks that are folded anew when one goes back
@@ -47,13 +48,12 @@ class TreeNow:
 
 @dataclass
 class Now:
-    """Everything at one tick. `since_ns`: when each thing that `why` looks at became as it is."""
+    """Everything at one tick; `runs`: the trees that were ticked last, `paused`: by which word the mission is paused."""
 
     number: int = -1
     tick: Tick = field(default_factory=lambda: Tick(0, 0))
     trees: dict[int, TreeNow] = field(default_factory=dict)
-    situation: Situation = field(default_factory=Situation)
-    since_ns: dict[str, int] = field(default_factory=dict)
+    trail: Trail = field(default_factory=Trail)
     paused: str = ""
     runs: tuple[int, ...] = ()
 
@@ -77,8 +77,11 @@ class Box:
         return len(self._packed)
 
     def tick(self, number: int) -> Tick:
-        """The tick of that number; 0 is the first that the file still has."""
-        return _ticks.decode(self._packed[number])
+        """The tick of that number; 0 is the first that the file still has. What it tells of a tree that was lost is left out."""
+        tick = _ticks.decode(self._packed[number])
+        if any(branch.run not in self.trees for branch in tick.trees):
+            tick.trees = tuple(branch for branch in tick.trees if branch.run in self.trees)
+        return tick
 
     def number_at(self, t_s: float) -> int:
         """The last tick at or before a time; the first one if all are later. -1 without any."""
@@ -125,8 +128,7 @@ class Box:
                 now.board.pop(key, None)
             now.tick, now.nodes, now.state, now.reason, now.text = branch.tick, branch.nodes, branch.state, branch.reason, branch.text
         if tick.situation is not None:
-            note_changes(state.since_ns, state.situation, tick.situation, tick.t_ns)
-            state.situation = tick.situation
+            state.trail.take(tick.situation, tick.t_ns)
 
     def samples(self, topics: Iterable[str]) -> dict[str, list[Sample]]:
         """All recorded samples of topics, in order."""
@@ -150,22 +152,21 @@ class Box:
             yield Path(name)
 
 
-def note_changes(since_ns: dict[str, int], old: Situation, new: Situation, t_ns: int) -> None:
-    """Write down since when each part of a situation is as it is: `link/drive`, `stale/sick/scan`, `module/avoid`, `hold`, `mission`, `moves`."""
-    for kind, before, after in (("link", old.links, new.links), ("stale", old.stale, new.stale), ("module", old.modules, new.modules)):
-        for name in {**before, **after}:
-            if (name in before) != (name in after) or (kind != "stale" and before.get(name) != after.get(name)):
-                since_ns[f"{kind}/{name}"] = t_ns
-    for name in ("hold", "mission", "moves", "ended"):
-        if getattr(old, name) != getattr(new, name):
-            since_ns[name] = t_ns
-
-
 def open_box(path: Path, shown: str, faults: Faults) -> Box | None:
     """Read a black box, as far as it goes; None and faults if it is none."""
     file = open_mcap(path, shown, faults)
     if file is None:
         return None
+    try:
+        return _read(file, shown, faults)
+    except (msgspec.MsgspecError, KeyError) as error:
+        faults.error(Place(shown), "broken-black-box", f'"{shown}" is a black box that makes no sense', expected="a file of `pluto run --record`",
+                     found=str(error), mend="record the run again")  # fmt: skip
+        return None
+
+
+def _read(file: McapFile, shown: str, faults: Faults) -> Box | None:
+    """Raises: MsgspecError, KeyError for a file that something has spoiled."""
     times_ns: list[int] = []
     packed: list[bytes] = []
     trees: dict[int, Tree] = {}

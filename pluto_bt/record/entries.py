@@ -17,6 +17,7 @@ class Run(msgspec.Struct, kw_only=True):
     Attributes:
         hashes: SHA-256 of each attachment, and `parameters`: of the platform file with all settings.
         mode: lockstep or threads.
+        resumed: what the mission remembered of a run that was cut off.
         settings: of `--set`; `ports`, `tree`, `plugins`, `start`, `seed` as given.
     """
 
@@ -33,6 +34,7 @@ class Run(msgspec.Struct, kw_only=True):
     settings: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
     hashes: dict[str, str] = {}
+    resumed: dict[str, Any] = {}
 
 
 class NodeRow(msgspec.Struct, frozen=True, gc=False):
@@ -136,7 +138,7 @@ class Tick(msgspec.Struct, gc=False, omit_defaults=True):
         seqs: sequence numbers that this tick saw of the topics that leaves read; only those that changed.
         pose: x m, y m, theta rad of `Localization/Pose`.
         situation: if it changed.
-        is_key: `seqs` and `situation` are told whole.
+        is_key: `seqs` and `situation` are told whole. `is_end`: no step, but how things stood when the run was over.
     """
 
     t_ns: int
@@ -148,6 +150,7 @@ class Tick(msgspec.Struct, gc=False, omit_defaults=True):
     pose: tuple[float, float, float] | None = None
     situation: Situation | None = None
     is_key: bool = False
+    is_end: bool = False
 
     @property
     def t_s(self) -> float:

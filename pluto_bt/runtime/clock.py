@@ -125,6 +125,11 @@ wall_ns = time.perf_counter_ns
 """The wall's monotonic nanoseconds, for measuring and for the watchdog; never for decisions that a trace holds."""
 
 
+def calendar_ns() -> int:
+    """Nanoseconds since 1970, for what outlives a run; never for decisions within one."""
+    return time.time_ns()
+
+
 def wait(event: threading.Event, seconds: float) -> bool:
     """Wait for `event` at most `seconds` of the wall; True if it came. The one place where the main thread waits."""
     return event.wait(seconds)

@@ -37,7 +37,8 @@ LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean th
 class AvoidSenses(NamedTuple):
     """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
 
-    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force.
+    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force,
+    `waits_for_walker`: the stop filter holds the robot back because of somebody; `no_pose`: why there is no `pose`.
     """
 
     pose: Planar | None
@@ -46,6 +47,8 @@ class AvoidSenses(NamedTuple):
     twist: Twist = STILL
     view: ScanView | None = None
     sonar: SonarState | None = None
+    waits_for_walker: bool = False
+    no_pose: Verdict = Verdict(reason=reasons.NO_POSE, text="waits until it is known where the robot is")
 
 
 class Avoid:
@@ -97,8 +100,7 @@ class Avoid:
         """Look, decide, and give the command for drive if it changed."""
         dt_s, self._last_s = now_s - self._last_s, now_s
         if senses.dead is not None:
-            with_laser = self._kind is None or bool(self._kind[0] & Avoidance.LASER)
-            self.sight.look(senses.view, senses.sonar, senses.dead, with_laser, now_s)
+            self.sight.look(senses.view, senses.sonar, senses.dead, self._asks_laser, now_s)
         if self.command is None or self.verdict.reason == reasons.STOPPED:
             return None
         if self._kind is None:
@@ -111,7 +113,7 @@ class Avoid:
         return self._pass_down(now_s, senses, avoidance, kind)
 
     def status(self, now_s: float, drive: FVectorState | None, drive_has_it: bool) -> FVectorState:
-        """`avoidance/status`: own words first, else drive's once it has accepted our last command; a stopped drive shows always."""
+        """`avoidance/status`: own words first, else drive's once it has accepted our last command; a stopped drive and a rebooting laser always."""
         data = drive.data if drive is not None else STILL
         verdict = self.verdict
         code, reason, text = int(verdict.code), verdict.reason, verdict.text
@@ -119,7 +121,15 @@ class Avoid:
             code = drive.element[0]
             if not reason:
                 reason, text = drive.reason, drive.text or text
+        laser = self.sight.laser_fault(now_s) if not code and self._asks_laser else ALL_WELL
+        if laser.code is LinkStatus.LASER_FATAL:
+            code, reason, text = int(laser.code), reason or laser.reason, text or laser.text
         return FVectorState(now_s, data, (code, int(self.goto_status)), reason, text)
+
+    @property
+    def _asks_laser(self) -> bool:
+        """Whether the laser counts: A asks for it, or nothing is commanded."""
+        return self._kind is None or bool(self._kind[0] & Avoidance.LASER)
 
     # -------------------------------------------------------------- what goes down
 
@@ -137,7 +147,7 @@ class Avoid:
         if kind is CommandType.VELOCITY:
             twist = within(self.command.velocity, self._limits)
         elif senses.pose is None or raw_rad is None:
-            self.verdict = kept(self.verdict, Verdict(reason=reasons.NO_POSE, text="a heading is commanded, and nobody knows where the robot points"))
+            self.verdict = kept(self.verdict, senses.no_pose)
             return self._post(0, 0.0, STILL, self._order_s)
         else:
             heading_rad = self.command.position[1] - senses.pose[2] + raw_rad
@@ -161,6 +171,8 @@ class Avoid:
             self.verdict = kept(self.verdict, fault)
             self._goto.pause(now_s, dt_s)
             return self._post(0, 0.0, STILL, now_s)
+        if senses.waits_for_walker:
+            self._goto.pause(now_s, dt_s)
         points = self._points(now_s, senses.dead, avoidance)
         way = self._goto.step(now_s, senses.pose, senses.dead, points)
         self.goto_status = way.status
@@ -169,6 +181,7 @@ class Avoid:
             self.verdict = Verdict(reason=reason, text=way.text)
             return self._post(0, 0.0, STILL, now_s)
         share, command = self._steered(now_s, senses, avoidance, points, way.speed_mps, way.turn_rad, self._goto.limits)
+        self._goto.note_share(now_s, share)
         if share == 0.0 and way.speed_mps < 0.0:
             self._goto.give_up_backing()
         return command
@@ -182,6 +195,8 @@ class Avoid:
             self.verdict = kept(self.verdict, fault)
             self._wall.pause(dt_s)
             return self._rest(now_s)
+        if senses.waits_for_walker:
+            self._wall.pause(dt_s)
         points = self._points(now_s, senses.dead, avoidance)
         along = self._wall.step(now_s, senses.dead, points, self.sight.scan_s)
         if along.status is not WallStatus.FOLLOWING:
@@ -236,7 +251,7 @@ class Avoid:
         """Why a job that steers cannot know where to go."""
         needs_pose = self._kind is not None and self._kind[1] is CommandType.GOTO
         if (needs_pose and senses.pose is None) or senses.dead is None or senses.raw_heading_rad is None:
-            return Verdict(reason=reasons.NO_POSE, text="waits until it is known where the robot is")
+            return senses.no_pose
         fault = self.sight.laser_fault(now_s) if avoidance & Avoidance.LASER else ALL_WELL
         if fault == ALL_WELL and avoidance & Avoidance.SONAR:
             fault = self.sight.sonar_fault(now_s)

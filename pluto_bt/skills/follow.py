@@ -1,33 +1,32 @@
 """Following: which of the things in the laser moves, where it is now, and where to drive to keep a distance from it.
 
-Every free-standing piece of the scans gets a track; the nearest one that has come along is the target. A target that somebody crosses or
-that goes behind a corner is foretold for a moment, then looked for where it was seen last; after `LOST_S` it is given up.
+The nearest one that has come along is the target. A target that somebody crosses or that goes behind a corner is foretold for a moment, then
+looked for where it was seen last: at first for one who walks, then also for one who has stopped there. After `LOST_S` it is given up.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import Enum
 from typing import Final, NamedTuple
 
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.pieces import Piece
+from pluto_bt.skills.tracks import FORETELL_S, GATE_M, WATCHED_S, Track, Tracks
 
 REACH_M: Final = 10.0  # farther away nobody is followed
-MOVED_M: Final = 0.35  # who has come this far from where it was first seen moves
-WATCHED_S: Final = 0.6  # a track is at least so old before it counts as moving
-GATE_M: Final = 0.5  # a piece this near to where a track is expected belongs to it …
-FASTEST_MPS: Final = 2.0  # … and a target out of sight may have gone on at this speed
-FARTHEST_M: Final = 3.0  # but not farther than this, or it is another one
-FORGET_S: Final = 1.5  # a track that is no target is dropped after so long out of sight
-FORETELL_S: Final = 1.0  # a hidden target is thought to go on for so long
+FASTEST_MPS: Final = 2.0  # a target out of sight may have gone on at this speed …
+FARTHEST_M: Final = 4.5  # … but not farther than this, or it is another one
+GOES_ON_S: Final = 3.0  # of several, the one is taken who is nearest to where the target would be if it had gone on for so long
+STOPPED_S: Final = 2.0  # a target out of sight for so long may have stopped
+LIKE_M, THERE_M = 0.2, 2.0  # one who stands is the target only if he is as wide as it, and so near to where it went
 LOOK_S: Final = 1.6  # nobody is chosen before, so that a slow one who is near is not missed for a fast one who is far
 SEARCH_S: Final = 10.0
-LOST_S: Final = 6.0
-POSITION_GAIN, VELOCITY_GAIN = 0.6, 0.3  # of the alpha-beta filter
+LOST_S: Final = 8.0
 CLOSE_UP_PER_S: Final = 0.8  # speed for each metre that the distance is too long, on top of the target's own
 HYSTERESIS_M: Final = 0.15
+AROUND_S, AROUND_RAD = 3.5, math.radians(60.0)  # after so long out of sight it is looked for all around
+CORNER_M: Final = 0.3  # so near the robot goes to where a hidden target was expected: round the corner one sees more from the corner
 
 
 class Search(Enum):
@@ -40,40 +39,8 @@ class Search(Enum):
     LOST = "target-lost"
 
 
-@dataclass(slots=True)
-class Track:
-    """One thing over time, in a frame that never jumps; metres, m/s."""
-
-    x_m: float
-    y_m: float
-    born_s: float
-    seen_s: float
-    first: tuple[float, float]
-    vx_mps: float = 0.0
-    vy_mps: float = 0.0
-    moves: bool = False
-
-    def at(self, now_s: float) -> tuple[float, float]:
-        """Where it is expected: it goes on for a moment after it was seen."""
-        ahead_s = min(max(0.0, now_s - self.seen_s), FORETELL_S)
-        return self.x_m + ahead_s * self.vx_mps, self.y_m + ahead_s * self.vy_mps
-
-    def take(self, piece: Piece, now_s: float) -> None:
-        """It was seen again."""
-        dt_s = max(now_s - self.seen_s, 1e-3)
-        x, y = self.x_m + dt_s * self.vx_mps, self.y_m + dt_s * self.vy_mps
-        if dt_s > FORETELL_S:  # too long ago for its velocity to mean anything
-            x, y, self.vx_mps, self.vy_mps = piece.x_m, piece.y_m, 0.0, 0.0
-        dx, dy = piece.x_m - x, piece.y_m - y
-        self.x_m, self.y_m = x + POSITION_GAIN * dx, y + POSITION_GAIN * dy
-        self.vx_mps, self.vy_mps = self.vx_mps + VELOCITY_GAIN * dx / dt_s, self.vy_mps + VELOCITY_GAIN * dy / dt_s
-        self.seen_s = now_s
-        came_m = math.hypot(self.x_m - self.first[0], self.y_m - self.first[1])
-        self.moves = self.moves or (came_m >= MOVED_M and now_s - self.born_s >= WATCHED_S)
-
-
 class Aim(NamedTuple):
-    """Where to drive, in the frame of the tracks. `speed_mps` 0: stand, and turn by `turn_rad` towards the target."""
+    """Where to drive, in the frame of the tracks. `speed_mps` 0: stand, and turn by `turn_rad`: towards the target, or where it went."""
 
     goal: tuple[float, float]
     speed_mps: float
@@ -86,23 +53,19 @@ class Follow:
 
     def __init__(self, distance_m: float, most_mps: float, now_s: float) -> None:
         self._distance_m, self._most_mps = distance_m, most_mps
-        self._tracks: list[Track] = []
-        self._start_s = self._scan_s = now_s
+        self._tracks = Tracks()
+        self._start_s = now_s
         self._drives = False
+        self._turn_side = 1.0
         self.target: Track | None = None
 
     def see(self, pieces: list[Piece], robot: Planar, stamp_s: float) -> None:
-        """Take a scan's pieces: each track, the oldest first, takes the piece nearest to where it is expected."""
-        self._scan_s = stamp_s
-        free = list(pieces)
-        for track in sorted(self._tracks, key=lambda track: (stamp_s - track.seen_s, track.born_s)):
-            piece = _nearest(free, track.at(stamp_s), GATE_M)
-            if piece is not None:
-                free.remove(piece)
-                track.take(piece, stamp_s)
-        self._tracks += [Track(piece.x_m, piece.y_m, stamp_s, stamp_s, (piece.x_m, piece.y_m)) for piece in free]
-        self._tracks = [track for track in self._tracks if track is self.target or stamp_s - track.seen_s < FORGET_S]
-        self._choose(robot, stamp_s)
+        """Take a scan's pieces."""
+        self._tracks.see(pieces, stamp_s, self.target)
+        if self.target is None:
+            self._choose(robot, stamp_s)
+        elif stamp_s - self.target.seen_s >= 0.5 * FORETELL_S:
+            self.target = self._found_again(self.target, stamp_s)
 
     def state(self, now_s: float) -> Search:
         """How it stands."""
@@ -114,8 +77,7 @@ class Follow:
     def pause(self, gap_s: float) -> None:
         """Time in which nobody looked does not count."""
         self._start_s += gap_s
-        for track in self._tracks:
-            track.seen_s += gap_s
+        self._tracks.pause(gap_s)
 
     def aim(self, robot: Planar, now_s: float) -> Aim:
         """Where to drive now. Raises ValueError while there is no target."""
@@ -124,35 +86,46 @@ class Follow:
         x, y = self.target.at(now_s)
         dx, dy = x - robot[0], y - robot[1]
         away_m, turn_rad = math.hypot(dx, dy), math.remainder(math.atan2(dy, dx) - robot[2], math.tau)
-        keep_m = self._distance_m if self.state(now_s) is Search.SEEN else 0.3  # round the corner one sees more from the corner
-        too_far_m = away_m - keep_m
+        too_far_m = away_m - (self._distance_m if self.state(now_s) is Search.SEEN else CORNER_M)
         self._drives = too_far_m > (HYSTERESIS_M / 3.0 if self._drives else HYSTERESIS_M)
         if not self._drives:
-            if self.state(now_s) is Search.HIDDEN:  # at the place itself: look where he went
-                turn_rad = math.remainder(math.atan2(self.target.vy_mps, self.target.vx_mps) - robot[2], math.tau)
+            if self.state(now_s) is Search.HIDDEN:
+                turn_rad = self._look_around(self.target, robot[2], now_s)
             return Aim((x, y), 0.0, turn_rad, away_m)
         share = too_far_m / away_m
-        flees_mps = max(0.0, (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m)
-        speed_mps = min(self._most_mps, flees_mps + CLOSE_UP_PER_S * too_far_m)
+        flees_mps = (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m if self.state(now_s) is Search.SEEN else 0.0
+        speed_mps = max(0.0, min(self._most_mps, flees_mps + CLOSE_UP_PER_S * too_far_m))  # who comes back is awaited standing
         return Aim((robot[0] + share * dx, robot[1] + share * dy), speed_mps, turn_rad, away_m)
 
+    def _look_around(self, target: Track, heading_rad: float, now_s: float) -> float:
+        """How to turn at the place where a hidden target was expected: first to where it went, then on around."""
+        turn_rad = math.remainder(math.atan2(target.vy_mps, target.vx_mps) - heading_rad, math.tau)
+        if now_s - target.seen_s < AROUND_S:
+            self._turn_side = math.copysign(1.0, turn_rad)
+            return turn_rad
+        return self._turn_side * AROUND_RAD
+
     def _choose(self, robot: Planar, now_s: float) -> None:
-        """At first the nearest that moves; for a target that is hidden, the one that moves or has just come up where it may be."""
-        seen = [track for track in self._tracks if track.seen_s == now_s]
-        target = self.target
-        if target is None and now_s - self._start_s < LOOK_S:
-            return
-        if target is None:
-            movers = [track for track in seen if track.moves]
+        """The nearest that moves."""
+        if now_s - self._start_s >= LOOK_S:
+            movers = [track for track in self._tracks.all if track.moves and track.seen_s == now_s]
             self.target = min(movers, key=lambda track: math.hypot(track.x_m - robot[0], track.y_m - robot[1]), default=None)
-        elif now_s - target.seen_s >= 0.5 * FORETELL_S:
-            x, y = target.at(now_s)
-            gate_m = min(FARTHEST_M, GATE_M + FASTEST_MPS * (now_s - target.seen_s))
-            again = [track for track in seen if track.moves and track.born_s > target.seen_s and math.hypot(track.x_m - x, track.y_m - y) < gate_m]
-            self.target = min(again, key=lambda track: math.hypot(track.x_m - x, track.y_m - y), default=target)
 
+    def _found_again(self, target: Track, now_s: float) -> Track:
+        """Who has just come up where the target may be: one who walks, or, later, one who stands where nothing stood. Else the target as it is."""
+        hidden_s = now_s - target.seen_s
+        gate_m = min(FARTHEST_M, GATE_M + FASTEST_MPS * hidden_s)
+        x, y = target.at(now_s, GOES_ON_S)
+        fresh = [track for track in self._tracks.all if track.seen_s == now_s and track.born_s >= target.seen_s and track is not target]
+        near = [track for track in fresh if math.hypot(track.x_m - target.x_m, track.y_m - target.y_m) < gate_m]
+        found = [track for track in near if track.moves]
+        if not found and hidden_s >= STOPPED_S:
+            there = target.at(now_s)
+            stand = [track for track in near if math.dist((track.x_m, track.y_m), there) < THERE_M]
+            found = [track for track in stand if self._may_be(target, track, now_s)]
+        return min(found, key=lambda track: math.hypot(track.x_m - x, track.y_m - y), default=target)
 
-def _nearest(pieces: list[Piece], at: tuple[float, float], within_m: float) -> Piece | None:
-    """The piece nearest to a point, if one is near enough."""
-    nearest = min(pieces, key=lambda piece: math.hypot(piece.x_m - at[0], piece.y_m - at[1]), default=None)
-    return nearest if nearest is not None and math.hypot(nearest.x_m - at[0], nearest.y_m - at[1]) <= within_m else None
+    def _may_be(self, target: Track, track: Track, now_s: float) -> bool:
+        """True if one who stands there may be the target: he looks like it, and is no furniture."""
+        is_watched = now_s - track.born_s >= WATCHED_S
+        return is_watched and abs(track.width_m - target.width_m) < LIKE_M and not self._tracks.stood_there(track)

@@ -18,12 +18,15 @@ from pluto_bt.skills.steering import ROOM_M, Steer, Steering
 from pluto_bt.skills.sweep import first_contact
 
 PROGRESS_M = 0.1  # coming nearer by less is no progress
+PROGRESS_RAD = 0.1  # nor is turning to the way by less
 ARRIVAL_MPS = 0.08  # slowest approach
 COMFORT_SHARE = 0.5  # of the deceleration is used when nothing presses
 MOVED_M, MOVED_RAD = 0.01, 0.02  # less is standing still, whatever the wheels are told
 WEDGED_M = 0.05  # with less free way on the best heading the robot cannot go on
 BACKING_MPS = 0.12
 BACKING_S = 8.0
+HELD_S, CREPT_M, CREPT_RAD = 3.0, 0.1, 0.2  # whom a link below lets come no farther in so long backs too
+SAME_S, SAME_M = 0.5, 1.0  # a goal so soon after the last step and so near to the last goal follows on it
 
 
 class Way(NamedTuple):
@@ -41,9 +44,16 @@ class Goto:
     def __init__(self, outline: Outline, limits: Limits, parameters: AvoidParameters) -> None:
         self._outline, self._most, self.parameters = outline, limits, parameters
         self._steer = Steer(outline)
+        self.status = GotoStatus.NONE
+        self._goal, self._last_s = (0.0, 0.0), -math.inf
 
     def begin(self, command: ActuatorState, now_s: float) -> None:
-        """A new goal: position = x, y in Localization/Pose; velocity = most speed and turn rate; force[0]; acceleration[0] = tolerance_m if > 0."""
+        """A new goal: position = x, y in Localization/Pose; velocity = most speed and turn rate; force[0]; acceleration[0] = tolerance_m if > 0.
+
+        A goal beside the last one, while that is still driven to, is the same order with other figures: somebody is followed. Then what stood in
+        the way stays known.
+        """
+        follows_on = self.status is GotoStatus.RUNNING and now_s - self._last_s < SAME_S and math.dist(command.position, self._goal) < SAME_M
         speed_mps, turn_radps = command.velocity
         most, p = self._most, self.parameters
         speed_mps = min(speed_mps if speed_mps > 0.0 else p.goto_speed_mps, most.speed_mps)
@@ -53,17 +63,21 @@ class Goto:
         self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
         self._tolerance_m = command.acceleration[0] if command.acceleration[0] > 0.0 else p.goto_tolerance_m
         self.status = GotoStatus.RUNNING
-        self._best_m = math.inf
-        self._progress_s = self._moved_s = now_s
+        self._best_m = self._best_rad = math.inf
+        self._progress_s = self._last_s = now_s
+        if follows_on:
+            return
+        self._moved_s = self._came_s = self._braked_s = now_s
         self._back_from: tuple[Planar, float] | None = None
         self._driven: list[Planar] = []
-        self._stood: Planar | None = None  # where the odometry was when it last told of a motion
+        self._stood: Planar | None = None  # where the odometry was when it last told of a motion …
+        self._crept: Planar | None = None  # … and of one that is worth the name
         self._steer.forget()
 
     def pause(self, now_s: float, dt_s: float) -> None:
         """Time in which the robot had to stand for a reason outside of goto (laser rebooting) does not count as being stuck."""
         self._progress_s = min(now_s, self._progress_s + dt_s)
-        self._moved_s = min(now_s, self._moved_s + dt_s)
+        self._moved_s, self._came_s = min(now_s, self._moved_s + dt_s), min(now_s, self._came_s + dt_s)
 
     def step(self, now_s: float, pose: Planar, odometry: Planar, points: Array) -> Way:
         """The next decision.
@@ -73,6 +87,7 @@ class Goto:
             odometry: of the robot in a frame that never jumps.
             points: (n, 5) obstacles in the robot frame: x, y, margin, velocity.
         """
+        self._last_s = now_s
         dx, dy = self._goal[0] - pose[0], self._goal[1] - pose[1]
         distance_m, goal_rad = math.hypot(dx, dy), wrap_angle(math.atan2(dy, dx) - pose[2])
         self._note(now_s, distance_m, odometry)
@@ -85,9 +100,16 @@ class Goto:
         if self._back_from is not None and self._goes_on_backing(now_s, odometry):
             return Way(-BACKING_MPS, 0.0, self.status)
         steering = self._steered(points, goal_rad, distance_m, odometry[2])
+        if abs(steering.heading_rad) < self._best_rad - PROGRESS_RAD:  # a turn may take long among people
+            self._best_rad, self._progress_s = abs(steering.heading_rad), now_s
         if self._is_wedged(steering, now_s, odometry):
             return Way(-BACKING_MPS, 0.0, self.status)
         return Way(self._speed_mps(steering, distance_m), steering.heading_rad, self.status)
+
+    def note_share(self, now_s: float, share: float) -> None:
+        """How much of the last decision was let through: what is held although all of it was, is held by a link below, for what goto does not see."""
+        if share < 1.0:
+            self._braked_s = now_s
 
     def give_up_backing(self) -> None:
         """The way back is blocked too."""
@@ -95,10 +117,13 @@ class Goto:
 
     def _note(self, now_s: float, distance_m: float, odometry: Planar) -> None:
         if distance_m < self._best_m - PROGRESS_M:
-            self._best_m, self._progress_s = distance_m, now_s
+            self._best_m, self._best_rad, self._progress_s = distance_m, math.inf, now_s
         stood = self._stood
         if stood is None or math.dist(stood[:2], odometry[:2]) > MOVED_M or abs(wrap_angle(odometry[2] - stood[2])) > MOVED_RAD:
             self._stood, self._moved_s = odometry, now_s
+        crept = self._crept
+        if crept is None or math.dist(crept[:2], odometry[:2]) > CREPT_M or abs(wrap_angle(odometry[2] - crept[2])) > CREPT_RAD:
+            self._crept, self._came_s = odometry, now_s
 
     def _is_there(self, distance_m: float, goal_rad: float, now_s: float) -> bool:
         """Inside half the tolerance; or inside the tolerance and not coming nearer any more."""
@@ -131,12 +156,14 @@ class Goto:
     def _is_wedged(self, steering: Steering, now_s: float, odometry: Planar) -> bool:
         """Begin to back where neither driving nor turning helps, if the ground behind has just been driven over."""
         self._driven = [*self._driven[-80:], odometry]
-        if steering.free_m > WEDGED_M or abs(steering.heading_rad) > math.radians(10.0) or now_s - self._moved_s < 1.0:
+        sees_why = steering.free_m <= WEDGED_M and abs(steering.heading_rad) <= math.radians(10.0)
+        is_held = now_s - max(self._came_s, self._braked_s) > HELD_S
+        if not is_held and (not sees_why or now_s - self._moved_s < 1.0):
             return False
         came_m = max(math.hypot(odometry[0] - x, odometry[1] - y) for x, y, _ in self._driven)
         if self.limits.min_turn_radius_m > 0.0 or came_m < self.parameters.back_off_m or self.parameters.back_off_m <= 0.0:
             return False
-        self._back_from, self._moved_s = (odometry, now_s), now_s
+        self._back_from, self._moved_s, self._came_s = (odometry, now_s), now_s, now_s
         return True
 
     def _goes_on_backing(self, now_s: float, odometry: Planar) -> bool:

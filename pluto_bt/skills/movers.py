@@ -27,6 +27,11 @@ class Movers:
         self._stamp_s = -np.inf
         self._walkers = np.zeros((0, 5))  # x, y at the last scan, velocity x, y, stamp of the scan that saw him walk
 
+    @property
+    def walkers(self) -> Array:
+        """(n, 5) x m, y m, velocity x, y m/s, and when he was last seen walking, s: who is in the newest scan."""
+        return self._walkers
+
     def velocities(self, points: Array, beams: Beams, moved: Mask, stamp_s: float) -> tuple[Mask, Array]:
         """Which points belong to something that moves, and its velocity (0 where it was not seen before).
 

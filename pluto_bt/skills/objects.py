@@ -11,6 +11,7 @@ from pluto_bt.skills.local_map import CELLS, LocalMap
 from pluto_bt.skills.outline import Array, Planar
 
 STEPS = 120  # of the search for the smallest circle around points
+ASIDE_CELLS = 3  # beside the end of a thing; nearer cells may belong to it
 
 
 class Thing(NamedTuple):
@@ -47,9 +48,23 @@ def things_around(map: LocalMap, robot: Planar) -> list[Thing]:
             continue  # it goes on beyond the reach
         corners = np.array([map.middle_m(a + i0, b + j0) for a, b in cells.tolist()])
         thing = smallest_circle(corners)
-        if 2.0 * thing.radius_m <= p.largest_object_m + 2.0 * map.cell_m:
+        if 2.0 * thing.radius_m <= p.largest_object_m + 2.0 * map.cell_m and _ends_in_sight(map, robot, corners):
             found.append(thing)
     return sorted(found, key=lambda thing: math.hypot(thing.x_m - robot[0], thing.y_m - robot[1]) - thing.radius_m)
+
+
+def _ends_in_sight(map: LocalMap, robot: Planar, cells_m: Array) -> bool:
+    """True if on both sides of the cells (n, 2), as seen from the robot, something was seen: else it is a piece of what goes on there, a strip
+    of wall in a doorway or at the limit of sight."""
+    away = cells_m - robot[:2]
+    middle_rad = math.atan2(away[:, 1].mean(), away[:, 0].mean())
+    aside = away[:, 1] * math.cos(middle_rad) - away[:, 0] * math.sin(middle_rad)
+    for end, side in ((int(np.argmax(aside)), 1.0), (int(np.argmin(aside)), -1.0)):
+        step_m = side * ASIDE_CELLS * map.cell_m
+        x_m, y_m = cells_m[end, 0] - step_m * math.sin(middle_rad), cells_m[end, 1] + step_m * math.cos(middle_rad)
+        if map.evidence[map.cell(x_m, y_m)] == 0:
+            return False
+    return True
 
 
 def _groups(stands: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> list[np.ndarray[tuple[int, ...], np.dtype[np.intp]]]:

@@ -17,6 +17,7 @@ X, Y, MARGIN, SINCE, VX, VY = range(6)  # columns of the memory
 FIELD_EDGE_RAD = math.radians(1.0)  # memory this near the edge of the field of view is kept: the edge beam may just miss it
 LONE_STEP_M = 0.3  # a single beam so much shorter than both neighbours needs the scan before to confirm it
 HEARD_THROUGH_M = 0.4  # an echo so much farther says that nothing is where one was before
+APEX_M = 0.06  # an echo from nearer than the ring can tell was put so near to its transducer
 FORETELL_S = 1.0  # what moves is thought to go on for so long after it was seen
 
 
@@ -118,7 +119,7 @@ class Obstacles:
         bearing = np.arctan2(c * dy - s * dx, c * dx + s * dy)
         last_rad = scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
         outside = (bearing < scan.angle_min_rad + FIELD_EDGE_RAD) | (bearing > last_rad - FIELD_EDGE_RAD)
-        memory_s = np.where((old[:, VX] == 0.0) & (old[:, VY] == 0.0), p.memory_s, p.walker_memory_s)
+        memory_s = np.where(old[:, MARGIN] == p.margin_m, p.memory_s, p.walker_memory_s)  # who walks may be seen before his pace is known
         self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < self.reach_m + 1.0)]
 
 
@@ -142,7 +143,8 @@ def _heard_through(
             dx, dy = points[i, 0] - x_m, points[i, 1] - y_m
             away_x, away_y = c * dx + s * dy - axes[k, 0], c * dy - s * dx - axes[k, 1]
             ahead_m, aside_m = c_k * away_x + s_k * away_y, c_k * away_y - s_k * away_x
-            if free_m > 0.0 and away_x * away_x + away_y * away_y < free_m * free_m and abs(aside_m) < ahead_m * opening:
+            away_m = np.sqrt(away_x * away_x + away_y * away_y)
+            if away_m < free_m and (away_m < APEX_M or abs(aside_m) < ahead_m * opening):
                 gone[i] = True
     return gone
 

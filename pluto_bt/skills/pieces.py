@@ -31,7 +31,7 @@ def pieces_of(ranges_m: Array, angle_min_rad: float, angle_step_rad: float, lase
         ranges_m: (n,) metres; NaN, 0 and less say nothing.
         reach_m, widest_m: what is farther or wider is left out.
     """
-    good = np.where(ranges_m > 0.0, ranges_m, np.inf)
+    good = _mended(np.where(ranges_m > 0.0, ranges_m, np.inf))
     angles = angle_min_rad + angle_step_rad * np.arange(len(good)) + laser[2]
     near = good < reach_m
     finite = np.where(near, good, 0.0)
@@ -47,3 +47,14 @@ def pieces_of(ranges_m: Array, angle_min_rad: float, angle_step_rad: float, lase
         if width_m <= widest_m and good[start - 1] > good[start] and good[end] > good[end - 1]:
             found.append(Piece(float(x[start:end].mean()), float(y[start:end].mean()), width_m))
     return found
+
+
+def _mended(ranges_m: Array) -> Array:
+    """Single beams that miss the surface which both their neighbours see, lost or dazzled, put onto it: else they would cut a body in two."""
+    left, middle, right = ranges_m[:-2], ranges_m[1:-1], ranges_m[2:]
+    with np.errstate(invalid="ignore"):  # infinite ranges: their difference is no number, and no beam is put there
+        agree = np.abs(left - right) < APART_M
+        misses = agree & (np.minimum(np.abs(middle - left), np.abs(middle - right)) > APART_M)
+    mended = ranges_m.copy()
+    mended[1:-1][misses] = (0.5 * (left + right))[misses]
+    return mended

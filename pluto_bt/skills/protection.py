@@ -15,6 +15,7 @@ from pluto_bt.skills.sonar import where_word
 from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
+LEAST_MPS, LEAST_RADPS = 0.01, 0.004  # slower than both is wanting to stand
 AWAIT_S = 0.6  # who would walk into the robot within so long after it could have stopped is awaited standing
 
 
@@ -48,6 +49,8 @@ class Protection:
 
     def clear_share(self, points: Array, wanted: Twist, now: Twist) -> tuple[float, Verdict]:
         """The share of the wanted twist that can be braked before any point; the twist in force counts too, since it still has to be braked."""
+        if len(points) and abs(wanted[0]) < LEAST_MPS and abs(wanted[1]) < LEAST_RADPS:  # who steers sees no free way and stands by himself
+            return 1.0, self._seen(points, int(np.argmin(np.hypot(points[:, 0], points[:, 1]))))
         share, verdict = 1.0, ALL_WELL
         for twist in (wanted, now) if _differs(wanted, now) else (wanted,):
             if twist == STILL:

@@ -10,6 +10,7 @@ EXECUTIVE_SILENT = "executive-silent"
 LASER = "laser"
 LASER_FATAL = "laser-fatal"
 LASER_STALE = "laser-stale"
+LOST = "lost"
 NO_DEVICE = "no-device"
 NO_POSE = "no-pose"
 NO_WALL = "no-wall"
@@ -25,6 +26,7 @@ STOPPED = "stopped"
 STUCK = "stuck"
 UNSEEN = "unseen"
 WALL_LOST = "wall-lost"
+WALKER = "walker"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
@@ -35,6 +37,7 @@ CHAIN_REASONS: dict[str, str] = {
     LASER: "the laser sees an obstacle in the way; slower or stopped until it is clear",
     LASER_FATAL: "the laser has had a fatal error and is rebooting (about 20 s)",
     LASER_STALE: "the laser is asked for and delivers nothing that can be trusted: old, frozen, or full of holes",
+    LOST: "the laser sees another place than wheels and gyro tell of: nobody knows where the robot is; post a pose",
     NO_DEVICE: "the job needs a device that the platform does not have",
     NO_POSE: "the command needs Localization/Pose, and there is none or it is too old",
     NO_WALL: "wall follow sees no wall within reach, or none with room beside it",
@@ -50,4 +53,5 @@ CHAIN_REASONS: dict[str, str] = {
     STUCK: "goto makes no progress towards the goal, or wall follow none along the wall",
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
     WALL_LOST: "the wall that was followed is not there any more",
+    WALKER: "somebody walks near the way, or may do so out of view; the robot creeps there, or waits",
 }

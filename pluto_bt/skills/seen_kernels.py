@@ -1,7 +1,8 @@
-"""The hot loops of `SeenSpace`. A space is three arrays over square cells, in the frame of dead reckoning:
+"""The hot loops of `SeenSpace`. A space is four arrays over square cells, in the frame of dead reckoning:
 
-`seen` (n, n): when the cell was last seen to be free, s. `stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2):
-where, x m, y m; for two heights: LEVEL, the plane of the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
+`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (n, n): the same by the sonar alone.
+`stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2): where, x m, y m; for two heights: LEVEL, the plane of
+the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
 """
 
 from __future__ import annotations
@@ -18,6 +19,8 @@ NEVER = -1e18
 BEAM_SLACK_M = 0.05  # a beam that ends so little beyond a point does not prove that the point is gone: three sigma of an LMS200 and more
 CONE_SLACK_M = 0.12  # the same for an echo
 FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
+TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
+LATELY_S = 1.0
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
 
@@ -86,20 +89,26 @@ def put(
 
 @kernel
 def hear_cones(
-    seen: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float, stamp_s: float, most_m: float
-) -> None:
+    seen: Array, heard: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float,
+    stamp_s: float, most_m: float, fleeting_s: float,
+) -> None:  # fmt: skip
     """Take a round of the sonar ring.
 
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
-    the part of the arc that no other cone of this round clears counts as an obstacle.
+    the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
+    noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
+    where it was free a moment ago came by itself and may go by itself: it counts as so much older, `fleeting_s`, from the start.
     """
     opening = math.tan(half_cone_rad)
     for clears in (1, 0):
         for k in range(cones.shape[0]):
             x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
             if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
+                continue
+            if clears == 0 and echo_m <= cones[k, 5]:
+                cones[k, 3] = TOUCHING_M
                 continue
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
@@ -113,16 +122,17 @@ def hear_cones(
                         continue
                     if clears == 1:
                         if away_m < clear_m:
-                            clear_cell(seen, stamps, row, column, stamp_s)
+                            clear_cell(seen, heard, stamps, row, column, stamp_s)
                     elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
-                        put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, stamp_s)
+                        put_s = stamp_s - fleeting_s if heard[row, column] > stamp_s - LATELY_S else stamp_s
+                        put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
 
 
 @inline_kernel
-def clear_cell(seen: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
+def clear_cell(seen: Array, heard: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
     """The sonar hears through a cell: what was heard there is gone, and so is what the laser saw there long ago."""
-    seen[row, column] = stamp_s
+    seen[row, column] = heard[row, column] = stamp_s
     stamps[LOW, row, column] = NEVER
     if stamps[LEVEL, row, column] < stamp_s - FRESH_S:
         stamps[LEVEL, row, column] = NEVER

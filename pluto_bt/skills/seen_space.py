@@ -12,7 +12,7 @@ import numpy as np
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, hear_cones, put, see_beams, stand
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, hear_cones, put, see_beams, stand
 
 ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
 MOST_POINTS = 4000
@@ -26,20 +26,23 @@ ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes
 
 
 class SeenSpace:
-    """Cells as far as `reach_m` to each side."""
+    """Cells as far as `reach_m` to each side; `fleeting_s` is that of `hear_cones`."""
 
-    def __init__(self, outline: Outline, reach_m: float, hear_m: float) -> None:
+    def __init__(self, outline: Outline, reach_m: float, hear_m: float, fleeting_s: float = 0.0) -> None:
         n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
-        self._outline, self._hear_m, self._reach_m = outline, hear_m, reach_m
+        self._outline, self._hear_m, self._reach_m, self._fleeting_s = outline, hear_m, reach_m, fleeting_s
         self.seen: Array = np.full((n, n), NEVER)
+        self._heard: Array = np.full((n, n), NEVER)
         self.stamps: Array = np.full((2, n, n), NEVER)
         self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
         self.count = 0
+        self.believed: Array = np.zeros(0)
         self._corner = (0, 0)  # of the lower left cell, in cells
         self._middle: tuple[int, int] | None = None
         self._last_ranges_m: Array | None = None
         self._rounds: list[Array] = []
+        self._touching: Array = np.zeros((0, 2))  # robot frame
         self._see, self._hear, self._stand = see_beams.compiled(), hear_cones.compiled(), stand.compiled()
 
     @property
@@ -47,28 +50,45 @@ class SeenSpace:
         """The lower left corner in the frame of dead reckoning."""
         return self._corner[0] * CELL_M, self._corner[1] * CELL_M
 
-    def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
-        """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free."""
+    def forget(self) -> None:
+        """Nothing was ever seen: the robot stands in another place."""
+        for cells in (self.seen, self._heard, self.stamps, self.spots):
+            cells.fill(NEVER)
+        self._last_ranges_m = None
+        self.drop_echoes()
+
+    def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, people: Array) -> bool:
+        """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free.
+
+        Args:
+            people: (n, 3) discs x m, y m, radius m in which somebody walks: what is found there may go by itself.
+        Returns: True if it was level; then `believed` tells which of its beams count.
+        """
         ranges, first, step = scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad
         if abs(tilt_rad) > LEVEL_RAD:
             self._last_ranges_m = None
-            self._add_tilted(scan, laser, z_m, tilt_rad)
-            return
-        believed = self._believed(ranges)
+            self._add_tilted(scan, laser, z_m, tilt_rad, people)
+            return False
+        self.believed = believed = self._believed(ranges)
         self._last_ranges_m = ranges
         self._see(
             self.seen, self.stamps, self.spots, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed,
             scan.stamp_s, self._reach_m,
         )  # fmt: skip
+        return True
 
-    def _add_tilted(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float) -> None:
+    def _add_tilted(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, people: Array) -> None:
         angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
         ahead = scan.ranges_m * np.cos(angles)
         usable = (scan.ranges_m > 0.0) & (scan.ranges_m < self._reach_m) & (z_m - ahead * math.sin(tilt_rad) > GROUND_M)
+        usable &= self._believed(scan.ranges_m) > 0.0  # no level scan could take a dazzled beam back
         c, s = math.cos(laser[2]), math.sin(laser[2])
         x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * np.sin(angles))[usable]
-        for px, py in zip((laser[0] + c * x - s * y).tolist(), (laser[1] + s * x + c * y).tolist(), strict=True):
-            put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], scan.stamp_s)
+        points = np.column_stack((laser[0] + c * x - s * y, laser[1] + s * x + c * y))
+        is_body = (np.hypot(points[:, None, 0] - people[:, 0], points[:, None, 1] - people[:, 1]) < people[:, 2]).any(axis=1)
+        stamps_s = scan.stamp_s - np.where(is_body, self._fleeting_s, 0.0)
+        for (px, py), stamp_s in zip(points.tolist(), stamps_s.tolist(), strict=True):
+            put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], stamp_s)
 
     def _believed(self, ranges: Array) -> Array:
         """(n,) 1 where the end of a beam is believed; 0 for a lone short one (dazzle, a leaf) that the scan before does not confirm."""
@@ -98,19 +118,26 @@ class SeenSpace:
         if len(self._rounds) == ROUNDS:
             cones[:, CLEAR_TO] = np.minimum(np.minimum(*self._rounds[:2]), heard_m)
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
-        self._hear(self.seen, self.stamps, self.spots, *self.corner_m, cones, math.radians(sonar.cone_deg) / 2.0, stamp_s, most_m)
+        half_cone_rad = math.radians(sonar.cone_deg) / 2.0
+        self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s)
+        touching = np.flatnonzero(cones[:, ECHO] == TOUCHING_M)
+        x, y, theta = axes[touching].T
+        self._touching = np.column_stack((x + leaves_m[touching] * np.cos(theta), y + leaves_m[touching] * np.sin(theta)))
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
-        self._rounds = []
+        self._rounds, self._touching = [], np.zeros((0, 2))
 
     def stand(self, robot: Planar, grown_m: float, now_s: float, obstacles_since_s: float, window_m: float) -> None:
         """The robot stands here: its place is free. Gather the points within `window_m` into `points`."""
         outline = self._outline
         self.count = self._stand(
             self.seen, self.stamps, self.spots, *self.corner_m, *robot, outline.planes, outline.reach_m, grown_m, now_s, obstacles_since_s,
-            max(window_m, outline.reach_m + grown_m + CELL_M), self.points,
+            max(window_m, outline.reach_m + grown_m + CELL_M), self.points[: MOST_POINTS - len(self._touching)],
         )  # fmt: skip
+        for x, y in self._touching.tolist():
+            self.points[self.count] = x, y, LOW, 0.0
+            self.count += 1
 
     def roll(self, robot: Planar) -> None:
         """Keep the robot in the middle; what leaves the cells is forgotten."""
@@ -121,7 +148,7 @@ class SeenSpace:
         corner = (at[0] - half, at[1] - half)
         moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
         self._corner, self._middle = corner, at
-        self.seen = _shifted(self.seen, *moved)
+        self.seen, self._heard = _shifted(self.seen, *moved), _shifted(self._heard, *moved)
         self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
         self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
 

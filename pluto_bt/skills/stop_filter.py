@@ -1,55 +1,37 @@
 """The stop filter: whatever the command, no contact with what can be known about (DESIGN.md, section 3). It slows and stops, it never steers.
 
-It stands between drive and base, has its own eyes (`SeenSpace`), and lets a command through only as far as the robot, taking it for one
+It stands between drive and base, has its own eyes (`FilterEyes`), and lets a command through only as far as the robot, taking it for one
 more decision and braking then, meets nothing and moves into nothing unseen faster than it creeps. Start reading at `StopFilter.step`.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from pluto_bt.blackboard.codes import LinkStatus
-from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, LaserScan, SonarState
+from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons, stop_path
+from pluto_bt.skills.filter_eyes import FilterEyes, FilterSenses
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
 from pluto_bt.skills.map_hold import held_by_area
 from pluto_bt.skills.outline import Array, Planar, outline_of
-from pluto_bt.skills.scan_watch import ScanWatch
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
-from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
-from pluto_bt.skills.sonar import SonarRing, sonar_code, where_word
+from pluto_bt.skills.sonar import sonar_code, where_word
 from pluto_bt.skills.stop_path import first_trouble, rim_of
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
+
+__all__ = ["FilterSenses", "StopFilter"]
 from pluto_bt.skills.wheel_watch import WheelWatch
 
 BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve for slopes and worn brakes
 HALVINGS = 5  # the share of a command that may pass is found to 3 %
 SLOWEST: Twist = (0.01, 0.015)  # less than both is not worth the motors' while
 TOUCH_M = 0.01  # so near is as good as touching
-
-
-class FilterSenses(NamedTuple):
-    """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3; `age_s`: of the executive's last step.
-
-    `laser` and `tilt_rad`: where `scan` was taken from, in the frame of dead reckoning; `sonar_at`: where the robot was when `sonar` listened.
-    """
-
-    raw: ActuatorState | None
-    pose: tuple[float, Planar] | None
-    pose_map: Planar | None = None
-    scan: LaserScan | None = None
-    laser: Planar | None = None
-    tilt_rad: float = 0.0
-    sonar: SonarState | None = None
-    sonar_at: Planar | None = None
-    bumper: BumperState | None = None
-    executive_age_s: float = 0.0
 
 
 class StopFilter:
@@ -64,21 +46,13 @@ class StopFilter:
         devices, motors = platform.devices, platform.limits
         self._lag_s = motors.motor_latency_s + motors.motor_time_constant_s
         self._hold_s = p.period_s + self._lag_s + 0.05  # odometry and scheduling take their time too
-        self._laser, self._sonar = devices.laser, devices.sonar
-        self._watch = ScanWatch(devices.laser, p.laser_stale_s, p.laser_holes) if devices.laser else None
-        self._ring = SonarRing(devices.sonar, self._outline) if devices.sonar else None
-        axes = self._ring.axes.tolist() if self._ring else []
-        self._leaves_m = np.array([self._outline.way_out_m(x, y, math.cos(theta), math.sin(theta)) for x, y, theta in axes])
         self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
-        self.has_eyes = self._laser is not None or self._sonar is not None
-        self.space = SeenSpace(self._outline, self._window_m(self.limits.speed_mps) + BEHIND_M, p.hear_m) if self.has_eyes else None
+        has_eyes = devices.laser is not None or devices.sonar is not None
+        self.eyes = FilterEyes(platform, p, self._outline, self._window_m(self.limits.speed_mps)) if has_eyes else None
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self._first_trouble = first_trouble.compiled()
         self.verdict = Verdict()
         self.out: Twist = STILL
-        self._scan: LaserScan | None = None
-        self._heard: SonarState | None = None
-        self._has_begun = False
 
     def step(self, wanted: Twist, now_s: float, senses: FilterSenses) -> Twist:
         """The twist that may go to the base now."""
@@ -101,36 +75,15 @@ class StopFilter:
 
     def look(self, now_s: float, senses: FilterSenses) -> None:
         """Take what is new; also called while there is no command, so that the memory is there when one comes."""
-        if self.space is None or senses.pose is None:
+        if self.eyes is None or senses.pose is None:
             return
-        p, space, robot = self.parameters, self.space, senses.pose[1]
         speed_mps = self.limits.speed_mps if senses.raw is None else max(abs(senses.raw.velocity[0]), abs(self.out[0]))
-        window_m = self._window_m(min(speed_mps + 0.1, self.limits.speed_mps))
-        grown_m = 0.0 if self._has_begun else p.assumed_clear_m
-        space.roll(robot)
-        self._take_scan(senses)
-        self._take_echoes(senses, now_s)
-        space.stand(robot, grown_m, now_s, now_s - p.obstacle_memory_s, window_m)
-        self._has_begun = True
+        self.eyes.look(now_s, senses, senses.pose[1], self._window_m(min(speed_mps + 0.1, self.limits.speed_mps)))
 
-    def _take_scan(self, senses: FilterSenses) -> None:
-        scan, last, self._scan = senses.scan, self._scan, senses.scan
-        if scan is None or self._watch is None or self._laser is None or self.space is None or (last is not None and scan.stamp_s == last.stamp_s):
-            return
-        if self._watch.look(scan, senses.laser) and senses.laser is not None:
-            self.space.add_scan(scan, senses.laser, self._laser.z_m, senses.tilt_rad)
-
-    def _take_echoes(self, senses: FilterSenses, now_s: float) -> None:
-        sonar, ring = senses.sonar, self._ring
-        if sonar is None or sonar is self._heard or ring is None or self._sonar is None or self.space is None or senses.sonar_at is None:
-            return
-        self._heard = sonar
-        ranges_m = np.array(sonar.ranges_m)
-        if ranges_m.shape != (ring.count,) or not np.isfinite(ranges_m).all() or now_s - sonar.stamp_s > self.parameters.sonar_stale_s:
-            self._heard = None
-            self.space.drop_echoes()
-            return
-        self.space.add_echoes(ring.axes, self._leaves_m, ranges_m, self._sonar, senses.sonar_at, sonar.stamp_s)
+    def forget(self) -> None:
+        """The robot stands in another place: nothing that was seen is there."""
+        if self.eyes is not None:
+            self.eyes.forget()
 
     def _stop_m(self, speed_mps: float) -> float:
         """The way from a decision to standstill."""
@@ -153,16 +106,16 @@ class StopFilter:
         if wanted == STILL:
             return STILL, ALL_WELL
         held, verdict = self._bumped(wanted, senses.bumper)
-        if not self.has_eyes:
+        if self.eyes is None:
             return held_by_area(self._area, held, senses.pose_map, self._stop_m(held[0]), verdict)
-        if not self._hears(now_s):
+        if not self.eyes.hears(now_s):
             deaf = Verdict(LinkStatus.SONAR_FRONT, reasons.SONAR_STALE, f"no usable echoes younger than {p.sonar_stale_s:g} s")
             held, verdict = self._slowed(held, p.without_sonar_mps, deaf, verdict)
-        laser = ALL_WELL if self._watch is None else self._watch.verdict(now_s)
+        laser = self.eyes.laser_fault(now_s)
         if laser != ALL_WELL:
             held, verdict = self._slowed(held, p.without_laser_mps, laser, verdict)
         assert senses.raw is not None and senses.pose is not None  # else `_trouble` had spoken
-        return self._cleared(held, senses.raw, senses.pose[1], now_s, verdict)
+        return self._cleared(self.eyes, held, senses.raw, senses.pose[1], now_s, verdict)
 
     def _trouble(self, now_s: float, senses: FilterSenses) -> Verdict:
         """What forbids every motion."""
@@ -173,7 +126,7 @@ class StopFilter:
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
             age = "no odometry at all" if raw is None else f"the newest odometry is {now_s - raw.stamp_s:.2f} s old"
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_STALE, f"{age}; {p.odometry_stale_s:g} s are allowed")
-        if self.has_eyes and (senses.pose is None or now_s - senses.pose[0] > p.odometry_stale_s):
+        if self.eyes is not None and (senses.pose is None or now_s - senses.pose[0] > p.odometry_stale_s):
             return Verdict(LinkStatus.NORMAL, reasons.NO_POSE, f"dead reckoning has given no pose for {p.odometry_stale_s:g} s")
         return wheels
 
@@ -186,10 +139,6 @@ class StopFilter:
         held = (0.0 if forbidden else twist[0], 0.0)
         return held, ALL_WELL if held == twist else Verdict(code, reasons.BUMPER, f"the {'front' if bumper.front else 'back'} bumper is pressed")
 
-    def _hears(self, now_s: float) -> bool:
-        """Whether the sonar, where there is one, can be trusted."""
-        return self._ring is None or (self._heard is not None and now_s - self._heard.stamp_s <= self.parameters.sonar_stale_s)
-
     def _slowed(self, twist: Twist, most_mps: float, why: Verdict, verdict: Verdict) -> tuple[Twist, Verdict]:
         """The twist along the same arc, so slow that no point of the outline is faster than `most_mps`."""
         fastest_mps = max(abs(twist[0]), abs(twist[1]) * self._outline.reach_m)
@@ -198,16 +147,25 @@ class StopFilter:
         share = most_mps / fastest_mps
         return (twist[0] * share, twist[1] * share), why
 
-    def _cleared(self, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict) -> tuple[Twist, Verdict]:
+    def _cleared(
+        self, eyes: FilterEyes, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict
+    ) -> tuple[Twist, Verdict]:
         """The largest share of a twist whose stopping path is free."""
-        figures = self._figures(raw)
-        trouble = self._look_along(twist, figures, robot, now_s)
+        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.walkers.rows(now_s), self.parameters
+
+        def trouble_at(share: float) -> tuple[int, int, float]:
+            return self._first_trouble(
+                space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures,
+                twist[0] * share, twist[1] * share, now_s - p.free_memory_s, walkers, now_s - p.walker_gap_s,
+            )  # fmt: skip
+
+        trouble = trouble_at(1.0)
         if trouble[0] == stop_path.CLEAR:
             return twist, verdict
         low, high = 0.0, 1.0
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
-            found = self._look_along((twist[0] * share, twist[1] * share), figures, robot, now_s)
+            found = trouble_at(share)
             if found[0] == stop_path.CLEAR:
                 low = share
             else:
@@ -215,7 +173,7 @@ class StopFilter:
         out = (twist[0] * low, twist[1] * low)
         if abs(out[0]) < SLOWEST[0] and abs(out[1]) < SLOWEST[1]:
             out = STILL
-        return out, self._why(trouble, twist, out)
+        return out, self._why(eyes, trouble, twist, out)
 
     def _figures(self, raw: ActuatorState) -> Array:
         """The robot as `first_trouble` reckons with it: it is already on its way to what it was told last."""
@@ -226,24 +184,17 @@ class StopFilter:
             self._hold_s, self._outline.reach_m, self._least_m, self._least_m + p.margin_m, p.margin_s, p.creep_mps,
         ])  # fmt: skip
 
-    def _look_along(self, twist: Twist, figures: Array, robot: Planar, now_s: float) -> tuple[int, int, float]:
-        space = self.space
-        assert space is not None
-        return self._first_trouble(
-            space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures, *twist,
-            now_s - self.parameters.free_memory_s,
-        )  # fmt: skip
-
-    def _why(self, trouble: tuple[int, int, float], wanted: Twist, out: Twist) -> Verdict:
+    def _why(self, eyes: FilterEyes, trouble: tuple[int, int, float], wanted: Twist, out: Twist) -> Verdict:
         """A sentence with figures."""
         kind, which, _ = trouble
         asked = f"{wanted[0]:.2f} m/s and {math.degrees(wanted[1]):.0f} deg/s were asked for, {out[0]:.2f} and {math.degrees(out[1]):.0f} pass"
-        if kind == stop_path.UNSEEN:
-            x_m, y_m = self._rim[which, :2].tolist()
-            return Verdict(LinkStatus.NORMAL, reasons.UNSEEN, f"{asked}: the outline {where_word(x_m, y_m)} would move where nothing was ever seen")
-        assert self.space is not None
-        x_m, y_m, layer, _ = self.space.points[which].tolist()
-        is_laser = layer == LEVEL and self._laser is not None
+        if kind != stop_path.MEETS:
+            part = where_word(*self._rim[which, :2].tolist())
+            if kind == stop_path.UNSEEN:
+                return Verdict(LinkStatus.NORMAL, reasons.UNSEEN, f"{asked}: the outline {part} would move where nothing was ever seen")
+            return Verdict(LinkStatus.NORMAL, reasons.WALKER, f"{asked}: the outline {part} would move to where somebody may walk")
+        x_m, y_m, layer, _ = eyes.space.points[which].tolist()
+        is_laser = layer == LEVEL and eyes.has_laser
         code = LinkStatus.LASER_SLOW_STOP if is_laser else sonar_code(x_m, y_m, self._outline)
         what = f"{'the laser saw' if is_laser else 'the sonar heard'} something {self._outline.distance_m(x_m, y_m):.2f} m from the outline"
         return Verdict(code, reasons.LASER if is_laser else reasons.SONAR, f"{asked}: {what}, {where_word(x_m, y_m)}")

@@ -10,12 +10,15 @@ from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Outline
 from pluto_bt.skills.seen_kernels import CELL_M, NEVER, cell_of, outside_m
 
-CLEAR, MEETS, UNSEEN = 0, 1, 2
+CLEAR, MEETS, UNSEEN, WALKER = 0, 1, 2, 3
 STEP_M = 0.03  # the rim is looked at each time the outline may have moved so far
 NEARER_M = 0.004  # a point already within its margin may come nearer by so much in one decision, but never nearer than LEAST_M
 DEEP_M = -0.1  # points deeper inside the outline are the robot itself
 MOST_MARGIN_M = 0.1
 LONGEST_S = 8.0
+BODY_M, SLIM_M = 0.2, 0.1  # who touches the outline has his middle about so far outside of it, give or take the second
+FAN_RAD = math.radians(15.0)  # a corner may be touched from all directions between its two edges' normals: one is looked at in each so much
+WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS, IN_VIEW = range(7)  # columns of the walkers
 SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, LEAST_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(11)
 
 
@@ -23,6 +26,7 @@ SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M
 def first_trouble(
     points: Array, count: int, planes: Array, rim: Array, seen: Array, stamps: Array, corner_x_m: float, corner_y_m: float,
     x_m: float, y_m: float, theta_rad: float, figures: Array, speed_mps: float, turn_rate_radps: float, known_since_s: float,
+    walkers: Array, fresh_since_s: float,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Drive the command, brake, and look on the way.
 
@@ -32,7 +36,9 @@ def first_trouble(
         figures: the robot's twist now, its limits, how long the command holds before the brakes bite, and so on (the constants above).
         speed_mps, turn_rate_radps: the command.
         known_since_s: cells seen before are not known any more.
-    Returns: (CLEAR, -1, 0), (MEETS, point, s) or (UNSEEN, rim point, s): what comes first, and when.
+        walkers: (k, 7) the discs in which the middles of walkers are; see `Walker.row`.
+        fresh_since_s: nobody who is out of view is where it was seen to be free since.
+    Returns: (CLEAR, -1, 0), (MEETS, point, s), (UNSEEN, rim point, s) or (WALKER, rim point, s): what comes first, and when.
     """
     v, w = figures[SPEED], figures[TURN_RATE]
     fastest = max(abs(v), abs(speed_mps)) + max(abs(w), abs(turn_rate_radps)) * figures[REACH_M]
@@ -49,9 +55,12 @@ def first_trouble(
         if to_rim_m <= 0.0 or (was_held and not goes_on):  # when the brakes begin to bite it is fastest
             to_rim_m, was_held = STEP_M, goes_on
             creep_mps = figures[CREEP_MPS]
-            which = rim_in_the_dark(rim, seen, stamps, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s)
-            if which >= 0:
-                return UNSEEN, which, t_s
+            kind, which = rim_in_danger(
+                rim, seen, stamps, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s,
+                walkers, fresh_since_s, t_s,
+            )  # fmt: skip
+            if kind != CLEAR:
+                return kind, which, t_s
         dt_s = min(0.05, max(0.005, 0.5 * STEP_M / max(abs(v) + abs(w) * figures[REACH_M], 1e-3)))
         v_next = towards(v, speed_mps if goes_on else 0.0, figures[ACCELERATION] * dt_s, figures[DECELERATION] * dt_s)
         w_next = towards(w, turn_rate_radps if goes_on else 0.0, figures[TURN_ACCELERATION] * dt_s, figures[TURN_ACCELERATION] * dt_s)
@@ -92,22 +101,41 @@ def nearest(points: Array, count: int, planes: Array, x: float, y: float, turned
 
 
 @inline_kernel
-def rim_in_the_dark(
+def rim_in_danger(
     rim: Array, seen: Array, stamps: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float,
-    x: float, y: float, turned: float, v: float, w: float, creep_mps: float, known_since_s: float,
-) -> int:  # fmt: skip
-    """Which point of the rim moves outwards, faster than creeping, where nothing was ever seen; -1 = none."""
+    x: float, y: float, turned: float, v: float, w: float, creep_mps: float, known_since_s: float, walkers: Array, fresh_since_s: float, t_s: float,
+) -> tuple[int, int]:  # fmt: skip
+    """Which point of the rim moves outwards, faster than creeping, where nothing was ever seen, or where a walker may be by then."""
     c0, s0 = math.cos(theta_rad), math.sin(theta_rad)
     c, s = math.cos(theta_rad + turned), math.sin(theta_rad + turned)
     at_x, at_y = x_m + c0 * x - s0 * y, y_m + s0 * x + c0 * y
     for i in range(rim.shape[0]):
-        px, py = rim[i, 0], rim[i, 1]
-        if (v - w * py) * rim[i, 2] + w * px * rim[i, 3] <= creep_mps:
+        px, py, nx, ny = rim[i, 0], rim[i, 1], rim[i, 2], rim[i, 3]
+        if (v - w * py) * nx + w * px * ny <= creep_mps:
             continue
         column, row = cell_of(at_x + c * px - s * py, corner_x_m), cell_of(at_y + s * px + c * py, corner_y_m)
         if not is_known(seen, stamps, row, column, known_since_s):
-            return i
-    return -1
+            return UNSEEN, i
+        if walkers.shape[0] > 0:
+            px, py = px + BODY_M * nx, py + BODY_M * ny
+            px, py = at_x + c * px - s * py, at_y + s * px + c * py
+            column, row = cell_of(px, corner_x_m), cell_of(py, corner_y_m)
+            is_fresh = 0 <= row < seen.shape[0] and 0 <= column < seen.shape[1] and seen[row, column] >= fresh_since_s
+            if is_walked_to(walkers, px, py, t_s, is_fresh):
+                return WALKER, i
+    return CLEAR, -1
+
+
+@inline_kernel
+def is_walked_to(walkers: Array, px: float, py: float, t_s: float, is_fresh: bool) -> bool:
+    """Whether the middle of a walker may be at a point after `t_s`; of those out of view none is where it `is_fresh`."""
+    found = False
+    for k in range(walkers.shape[0]):
+        dx, dy = walkers[k, WALKER_X] + walkers[k, DRIFT_X] * t_s - px, walkers[k, WALKER_Y] + walkers[k, DRIFT_Y] * t_s - py
+        near_m = walkers[k, SPREAD_M] + walkers[k, GROWTH_MPS] * t_s + SLIM_M
+        if dx * dx + dy * dy < near_m * near_m and (walkers[k, IN_VIEW] != 0.0 or not is_fresh):
+            found = True
+    return found
 
 
 @inline_kernel
@@ -137,11 +165,19 @@ def towards(now: float, wanted: float, faster: float, slower: float) -> float:
 
 
 def rim_of(outline: Outline, corners_m: tuple[tuple[float, float], ...]) -> Array:
-    """(m, 4) points x, y of the outline with their outward normals, at most 0.7 cells apart, so that none of their steps leaps over a cell."""
+    """(m, 4) points x, y of the outline with their outward normals, at most 0.7 cells apart, so that none of their steps leaps over a cell.
+
+    A corner comes again with directions between the normals of its two edges.
+    """
+    planes = outline.planes.tolist()
     rows = []
-    for nx, ny, c in outline.planes.tolist():
+    for (nx, ny, c), (mx, my, _) in zip(planes, planes[1:] + planes[:1], strict=True):
         on_edge = [-ny * x + nx * y for x, y in corners_m if abs(nx * x + ny * y - c) < 1e-6]
         first, last = min(on_edge), max(on_edge)
         n = max(2, math.ceil((last - first) / (0.7 * CELL_M)) + 1)
         rows += [(nx * c - ny * along, ny * c + nx * along, nx, ny) for along in np.linspace(first, last, n).tolist()]
+        corner, normal_rad = rows[-1][:2], math.atan2(ny, nx)
+        bend_rad = math.atan2(nx * my - ny * mx, nx * mx + ny * my)
+        steps = math.ceil(bend_rad / FAN_RAD)
+        rows += [(*corner, math.cos(normal_rad + bend_rad * k / steps), math.sin(normal_rad + bend_rad * k / steps)) for k in range(1, steps)]
     return np.array(rows)

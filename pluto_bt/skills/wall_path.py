@@ -23,7 +23,7 @@ BEHIND_M = 0.9  # the first ball begins so far behind the robot …
 AHEAD_M = 3.0  # … and rolls on so far before it
 STEPS = 120
 ENOUGH_M = 1.5  # a path that ends earlier is none …
-ASIDE_M = 0.3  # a second ball that is pushed farther aside where it begins does not fit between the sides
+ASIDE_M = 0.3  # a ball that is pushed farther aside where it begins does not fit between the sides
 GROWTH = 1.15  # of a ball that has found more room, from step to step
 LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
@@ -69,6 +69,11 @@ class WallPath(NamedTuple):
     def off_m(self) -> float:
         """How far the robot is from the path."""
         return math.hypot(*self.points[self.foot, :2])
+
+
+def warm() -> None:
+    """Use the kernel once, so that no later use waits for its compilation."""
+    roll(np.zeros((1, 2)), 0.0, 1.0, 1.0, STEP_M, 1)
 
 
 def find_wall(points: Array, wish: Wish) -> Ball | None:
@@ -128,8 +133,9 @@ def _seated(points: Array, ball: Ball, radius_m: float) -> Ball | None:
     """A ball of another size let down where `ball` touches the wall; None if it does not fit there."""
     dx, dy = ball.x_m - ball.touched_x_m, ball.y_m - ball.touched_y_m
     share = radius_m / max(math.hypot(dx, dy), 1e-6)
-    rows = roll(points, ball.touched_x_m + share * dx, ball.touched_y_m + share * dy, radius_m, STEP_M, 1)
-    return None if not len(rows) else _ball(rows[0], radius_m)
+    x_m, y_m = ball.touched_x_m + share * dx, ball.touched_y_m + share * dy
+    rows = roll(points, x_m, y_m, radius_m, STEP_M, 1)
+    return None if not len(rows) or math.hypot(rows[0, 0] - x_m, rows[0, 1] - y_m) > ASIDE_M else _ball(rows[0], radius_m)
 
 
 def _ball(row: Array, radius_m: float) -> Ball:

@@ -145,9 +145,9 @@ class Executive:
         if activity.error is not None:
             self._say("error", "leaf-error", activity.text)
 
-    def start(self, mission: Mission) -> None:
-        """Run `mission` from its beginning at the next step; one that runs is ended."""
-        self._orders.append((lambda: self._start(mission), {"": RUNNING}))
+    def start(self, mission: Mission, held: str = "") -> None:
+        """Run `mission` from its beginning at the next step; one that runs is ended. With `held`, a word, it waits for `resume` first."""
+        self._orders.append((lambda: self._start(mission, held), {"": PAUSED if held else RUNNING}))
 
     def start_errand(self, mission: Mission) -> Activity:
         """Run a single node beside a mission that does not run; an errand that goes on is ended."""
@@ -194,11 +194,13 @@ class Executive:
         self._body.stop()
         self._orders.append((lambda: self._abort(reason), {RUNNING: ABORTED, PAUSED: ABORTED}))
 
-    def _start(self, mission: Mission) -> None:
+    def _start(self, mission: Mission, held: str) -> None:
         self._abort("preempted")
         self._runs += 1
         self.mission = Activity(mission, self._runs)
-        self.note("start", self._runs)
+        if held:
+            self.mission.state, self.mission.reason = PAUSED, held
+        self.note("start-held" if held else "start", self._runs, held)
         self.on_begin(self.mission)
 
     def _start_errand(self, errand: Activity) -> None:

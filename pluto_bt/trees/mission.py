@@ -4,35 +4,23 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.board_view import BoardView
-from pluto_bt.trees.controls.reactive import ReactiveSequence
-from pluto_bt.trees.controls.sequence import Sequence
-from pluto_bt.trees.controls.try_catch import TryCatch
-from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
+from pluto_bt.trees.contracts import Contract, ContractWatch
+from pluto_bt.trees.deciding import decider_of
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result, name_of
 from pluto_bt.trees.errors import StepError, TickError
+from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import Tracked, letter_of
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
-
-
-class Origin(NamedTuple):
-    """Where a mission came from: its text, or the file that was read; `files` are the paths of that file and all it includes."""
-
-    text: str = ""
-    file: str = ""
-    files: tuple[str, ...] = ()
-
-
-NOWHERE: Final = Origin()
 
 
 class Mission:
@@ -43,11 +31,14 @@ class Mission:
         root: its first node, a py_trees behaviour.
         blackboard: the root entries, a mapping.
         origin: where it came from.
+        contracts: what must hold while it runs.
     """
 
     def __init__(self, name: str, root: Any, tracked: list[Tracked], board: Board, context: Context, origin: Origin = NOWHERE) -> None:
         self.name, self.root, self.origin = name, root, origin
+        self.contracts: tuple[Contract, ...] = ()
         self.blackboard = BoardView(board.root)
+        self._board = board
         self.ticks = 0
         self._tracked, self._context = tracked, context
         self._own_steps: dict[int, Callable[[], Result]] = {}
@@ -138,6 +129,10 @@ class Mission:
         skipped, now_s = self._skipped(), self._context.clock.now_s()
         return [tracked.state(tracked.status(skipped), now_s) for tracked in self._tracked]
 
+    def now_s(self) -> float:
+        """The time of its clock."""
+        return self._context.clock.now_s()
+
     def active_leaf(self) -> str:
         """The path of the deepest RUNNING node, the first one where several are; "" if none is."""
         best: Tracked | None = None
@@ -149,13 +144,8 @@ class Mission:
 
     def deciding_node(self) -> Tracked | None:
         """The node whose FAILURE the mission's is, usually a leaf: followed down from the root; None if the root did not fail."""
-        by_node = {id(tracked.node): tracked for tracked in self._tracked}
-        node = self.root
-        if _last(node) is not FAILURE:
-            return None
-        while (child := _culprit(node)) is not None:
-            node = child
-        return by_node[id(node)]
+        node = decider_of(self.root)
+        return None if node is None else next(tracked for tracked in self._tracked if tracked.node is node)
 
     def deciding_reason(self) -> str:
         """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if the root did not fail."""
@@ -224,6 +214,10 @@ class Mission:
             if not tracked.node.children:
                 tracked.node.step = _watched(number, tracked.node.step, listen)
 
+    def contract_watch(self) -> ContractWatch | None:
+        """A watch over its contracts; None if it has none."""
+        return ContractWatch(self.contracts, self._board.root) if self.contracts else None
+
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""
         return list(self._tracked)
@@ -255,18 +249,3 @@ def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
         halt()
     except Exception as error:
         errors.append(error)
-
-
-def _last(node: Any) -> Result:
-    result: Result = node.last if node.status is IDLE else node.status
-    return result
-
-
-def _culprit(node: Any) -> Any:
-    """The child that made `node` fail: a sequence ends with the first that fails, others with the last; below an Inverter one succeeded."""
-    failed = [child for child in node.children if _last(child) is FAILURE]
-    if failed:
-        return failed[0] if isinstance(node, (Sequence, ReactiveSequence, TryCatch)) else failed[-1]
-    if isinstance(node, (Inverter, ForceFailure)):
-        return next((child for child in node.children if _last(child) is SUCCESS), None)
-    return None

@@ -94,8 +94,8 @@ def test_timeout(stage: Any) -> None:
     [
         (said(0, 2, 0, 0, text="came no nearer"), "stuck", 0.2),
         (said(1, 2, 0, 0), "bumper", 0.2),
-        (said(1, -1, 0, 0), "bumper", 1.2),
-        (said(2, -1, 0, 0), "bumper", 1.2),
+        (said(1, -1, 0, 0), "bumper", 4.2),
+        (said(2, -1, 0, 0), "bumper", 4.2),
         (said(7, -1, 0, 0), "laser-fatal", 30.2),
         (said(0, -1, 0, 0, reason="laser-stale"), "laser-stale", 5.2),
         (said(0, -1, 0, 0, reason="no-pose"), "no-pose", 3.2),

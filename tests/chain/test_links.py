@@ -26,18 +26,6 @@ def command(r: Rig, link: str) -> ActuatorState:
     return sample.value
 
 
-@pytest.mark.parametrize(("flags", "down"), [(0, 0), (10, 10), (20, 0), (30, 10), (1, 1), (11, 11), (21, 1), (31, 11)])
-def test_t_0_and_1_go_down_with_the_laser_bit_removed(flags: int, down: int) -> None:
-    r = rig()
-    assert r.order(flags, (0.0, 0.0), (0.3, 0.0)) == ""
-    r.run(1.5)
-    assert command(r, "motion").flags == flags
-    assert command(r, "avoidance").flags == flags
-    assert command(r, "drive").flags == down
-    assert r.twist[0] == pytest.approx(0.3, abs=0.02)
-    assert r.status("motion").element == (0, 0, 0, 0)
-
-
 @pytest.mark.parametrize(("flags", "down"), [(2, 1), (12, 11), (22, 1), (32, 11)])
 def test_goto_goes_down_as_a_regulator_command_and_arrives(flags: int, down: int) -> None:
     r = rig()
@@ -50,28 +38,6 @@ def test_goto_goes_down_as_a_regulator_command_and_arrives(flags: int, down: int
     assert r.status("motion").element == (0, 1, 0, 0), "reached stays, and drive does not time out below it"
     assert math.hypot(r.pose[0] - 2.0, r.pose[1] - 1.0) < 0.3
     assert r.twist == (pytest.approx(0.0, abs=1e-3), pytest.approx(0.0, abs=1e-3))
-
-
-@pytest.mark.parametrize("flags", [4, 9, 19, 34, 40, 41, 47, 49, 50, 100, -2])
-def test_what_is_not_known_is_refused_with_zero_velocity(flags: int) -> None:
-    r = rig()
-    r.order(0, velocity=(0.5, 0.0))
-    r.run(2.0)
-    r.order(flags, (3.0, 0.0), (0.5, 0.0))
-    r.run(2.0)
-    assert r.twist[0] == pytest.approx(0.0, abs=1e-3)
-    assert r.status("motion").reason == "bad-command"
-    assert str(flags) in r.status("motion").text
-
-
-def test_the_drives_timeout_travels_up_for_pass_through() -> None:
-    r = rig()
-    r.order(30, velocity=(0.2, 0.0))
-    r.run(3.8)
-    assert r.status("motion").element[0] == 0
-    r.run(0.5)
-    assert r.status("motion").element[0] == -1
-    assert r.status("motion").reason == "command-timeout"
 
 
 def test_the_timeout_fires_although_avoidance_slows_and_restores() -> None:

@@ -14,7 +14,9 @@ from pluto_bt.skills.outline import outline_of
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL, LOW, NEVER
 from pluto_bt.skills.seen_space import SeenSpace
 from pluto_bt.skills.sonar import SonarRing
-from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, first_trouble, rim_of
+from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, WALKER, first_trouble, rim_of
+from pluto_bt.skills.walker import Walker
+from pluto_bt.skills.walkers import NOBODY
 from tests.chain.robots import ATRV2, PIONEER
 
 OUTLINE = outline_of(ATRV2.body.outline_m)
@@ -45,7 +47,7 @@ def wall_ahead(distance_m: float) -> np.ndarray:
 
 def test_beams_make_free_what_they_run_through_and_occupied_where_they_end() -> None:
     one = space()
-    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     assert one.seen[cell(one, 1.0, 0.3)] == 1.0
     assert one.seen[cell(one, 1.7, 0.0)] == NEVER, "behind the wall nothing is known"
     assert one.seen[cell(one, -0.5, 0.0)] == NEVER
@@ -54,8 +56,8 @@ def test_beams_make_free_what_they_run_through_and_occupied_where_they_end() -> 
 
 def test_what_goes_away_is_forgotten_when_a_beam_runs_through_its_place() -> None:
     one = space()
-    one.add_scan(scan(wall_ahead(1.0)), (0.0, 0.0, 0.0), 0.6, 0.0)
-    one.add_scan(scan(wall_ahead(1.8), 2.0), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.0)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
+    one.add_scan(scan(wall_ahead(1.8), 2.0), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     one.stand((0.0, 0.0, 0.0), 0.0, 2.0, 0.0, REACH_M)
     assert one.points[: one.count, 0].min() > 1.7
 
@@ -64,20 +66,31 @@ def test_one_lost_beam_opens_no_hole_and_one_short_beam_is_believed_the_second_t
     one, ranges = space(), wall_ahead(1.52)
     ranges[180] = 80.0
     ranges[100] = 0.7
-    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0)
-    one.add_scan(scan(ranges, 2.0), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
+    one.add_scan(scan(ranges, 2.0), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     at = (0.7 * math.cos(math.radians(40.0)), -0.7 * math.sin(math.radians(40.0)))
     assert one.stamps[(LEVEL, *cell(one, 1.52, 0.02))] > NEVER
     assert one.stamps[(LEVEL, *cell(one, *at))] == NEVER
-    one.add_scan(scan(ranges, 3.0), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(ranges, 3.0), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     assert one.stamps[(LEVEL, *cell(one, *at))] == 3.0
+
+
+@pytest.mark.parametrize(("beams", "is_there"), [((180,), False), ((179, 180), True)])
+def test_a_scan_that_looks_down_finds_low_things_but_believes_no_lone_short_beam(beams: tuple[int, ...], is_there: bool) -> None:
+    """Nothing could take a dazzled one back: a level scan does not look there."""
+    one, tilt_rad = space(), math.radians(10.0)
+    angles = np.radians(np.arange(361) / 2.0 - 90.0)
+    ground = np.minimum(80.0, 0.6 / np.maximum(np.cos(angles) * math.sin(tilt_rad), 1e-9))
+    ground[list(beams)] = 1.0
+    one.add_scan(scan(ground), (0.0, 0.0, 0.0), 0.6, tilt_rad, NOBODY)
+    assert bool((one.stamps[LOW] > NEVER).any()) == is_there
 
 
 @given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
 @settings(max_examples=30, deadline=None)
 def test_rolling_along_keeps_what_is_still_near(x: float, y: float) -> None:
     one = space()
-    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0)
+    one.add_scan(scan(wall_ahead(1.52)), (0.0, 0.0, 0.0), 0.6, 0.0, NOBODY)
     one.roll((x, y, 0.0))
     row, column = cell(one, 1.0, 0.3)
     if 0 <= row < len(one.seen) and 0 <= column < len(one.seen):
@@ -109,7 +122,7 @@ def test_an_echo_that_the_laser_does_not_explain_is_an_obstacle_and_is_forgotten
 def test_an_echo_of_what_the_laser_sees_adds_nothing() -> None:
     one, ranges = space(), np.full(16, 5.0)
     ranges[3] = ranges[4] = 1.0
-    one.add_scan(scan(wall_ahead(1.166)), (0.0, 0.0, 0.0), 0.4, 0.0)
+    one.add_scan(scan(wall_ahead(1.166)), (0.0, 0.0, 0.0), 0.4, 0.0, NOBODY)
     hear(one, ranges)
     one.stand((0.0, 0.0, 0.0), 0.0, 8.0, 0.0, REACH_M)
     assert not (one.points[: one.count, 2] == LOW).any()
@@ -126,12 +139,18 @@ def test_a_lost_echo_proves_nothing_before_three_rounds_agree() -> None:
 LIMITS = (0.4, 0.8, 0.8)  # acceleration, deceleration, turn acceleration
 
 
-def trouble(point: tuple[float, float] | None, now: tuple[float, float], told: tuple[float, float], is_seen: bool = True) -> tuple[int, int, float]:
+def trouble(
+    point: tuple[float, float] | None, now: tuple[float, float], told: tuple[float, float], is_seen: bool = True, walker: Walker | None = None,
+    fresh_since_s: float = 0.0,
+) -> tuple[int, int, float]:  # fmt: skip
+    """At 0 s; all cells were seen at 0 s, or never."""
     one = space()
     points = np.array([[*(point or (9.0, 9.0)), 0.0, 0.0]])
     seen = np.full_like(one.seen, 0.0 if is_seen else NEVER)
     figures = np.array([*now, *LIMITS, 0.2, OUTLINE.reach_m, 0.01, 0.02, 0.0, 0.045])
-    return first_trouble(points, 1, OUTLINE.planes, RIM, seen, one.stamps, *one.corner_m, 0.0, 0.0, 0.0, figures, *told, -1.0)
+    walkers = NOBODY if walker is None else np.array([walker.row(0.0)])
+    robot = (0.0, 0.0, 0.0)
+    return first_trouble(points, 1, OUTLINE.planes, RIM, seen, one.stamps, *one.corner_m, *robot, figures, *told, -1.0, walkers, fresh_since_s)
 
 
 def plain_motor(now: float, wanted: float, faster: float, slower: float) -> float:
@@ -178,6 +197,22 @@ def test_the_stopping_path_meets_what_small_steps_meet(x: float, y: float, v: fl
 )
 def test_into_what_was_never_seen_only_creeping(name: str, now: tuple[float, float], told: tuple[float, float], code: int) -> None:
     assert trouble(None, now, told, is_seen=False)[0] == code
+
+
+@pytest.mark.parametrize(
+    ("name", "told", "walker", "fresh_since_s", "code"),
+    [
+        ("in view, he comes towards the front", (0.5, 0.0), Walker(1.3, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
+        ("in view, he goes away", (0.5, 0.0), Walker(1.5, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("in view, he is too far to get here", (0.5, 0.0), Walker(4.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("creeping is no collision", (0.04, 0.0), Walker(1.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("out of view, and the ground was just seen to be free", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 0.0, CLEAR),
+        ("out of view, where nobody looks: the tail would swing out", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 1.0, WALKER),
+        ("out of view, but too far to have come", (0.0, 0.5), Walker(-1.0, -6.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 1.0, CLEAR),
+    ],
+)  # fmt: skip
+def test_where_somebody_walks_only_creeping(name: str, told: tuple[float, float], walker: Walker, fresh_since_s: float, code: int) -> None:
+    assert trouble(None, (0.0, 0.0), told, walker=walker, fresh_since_s=fresh_since_s)[0] == code
 
 
 def test_the_rim_leaves_no_gap_that_a_cell_fits_through() -> None:

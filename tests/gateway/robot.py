@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pluto_bt.blackboard import messages as m
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.gateway.replies import Cause
 
 
 class FakeRobot:
@@ -89,6 +90,12 @@ class FakeRobot:
 
     def tree_text(self, format: str) -> str:
         return "Sequence\n  GoTo <3;4>"
+
+    def why(self, at_s: float | None) -> tuple[bool, list[Cause]]:
+        if at_s is not None and at_s > self.time_s:
+            raise RefusedError("out-of-range", f"known are 0.0 s to {self.time_s:.1f} s")
+        bumper = Cause("sensor", "bumper", "front panel pressed", 4.0, 0.0, "back off")
+        return False, [bumper, Cause("mission", "paused", "mission patrol paused", 1.0)]
 
     def modules(self) -> m.ModulesState:
         return m.ModulesState(self.time_s, (m.ModuleState("base", "chain", "running", 3, 0, 0, 0.5),))

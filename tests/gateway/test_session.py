@@ -273,7 +273,7 @@ def test_mission_tree_events_and_modules_are_shown(story: Story) -> None:
     assert drawn.text == "Sequence\n  GoTo <3;4>"
     assert (ok.get("id"), event.get("id"), event.get("level"), event.text) == ("l", "l", "error", "ouch")
     items = story.says(client, '<describe topic="Localization/*"/>')[0]
-    assert [item.get("name") for item in items][:1] == ["Localization/Dead-Reckoning"] and len(items) == 5
+    assert [item.get("name") for item in items][:1] == ["Localization/Dead-Reckoning"] and len(items) == 6
 
 
 def test_a_mission_comes_through_as_it_was_written(story: Story) -> None:

@@ -79,6 +79,7 @@ EVERY_REPLY: list[replies.AnyReply] = [
     replies.Tree(tick=3, format="ascii", text=NASTY),
     replies.Tree(tick=3, format="xml", nodes=(m.NodeState(NASTY, "GoTo", NASTY, 1, "RUNNING", NASTY, 1.0),)),
     replies.Modules(state=m.ModulesState(0.0, (m.ModuleState("base", "chain", "running", 1, 0, 0, 0.1, NASTY),))),
+    replies.Why(is_moving=False, causes=(replies.Cause("sensor", "laser-stale", NASTY, 4.2, 0.5, NASTY), replies.Cause("node", "running", "", 0.0))),
     replies.LogLine(seq=1, event=m.Event(1.0, "warning", "say", "x", NASTY)),
     describe(Describe(), [topic.name for topic in TOPICS]),
 ]

@@ -68,6 +68,7 @@ def test_the_bias_is_found_at_rest_and_taken_away(make_rig: Any) -> None:
         assert rig.newest("dmu/state").bias_known == (k == 999)
     turned = rig.newest("dmu/state").theta_rad
     for k in range(1000, 1100):
+        still(rig, k, v=0.2)  # it moves now
         rig.devices["dmu"].records = [gyro(k, 0.51)]
         dmu.step(k * 0.02)
     state, raw = rig.newest("dmu/state"), rig.newest("dmu/raw")

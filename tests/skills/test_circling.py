@@ -32,11 +32,23 @@ def test_two_sides_of_a_box_already_give_its_middle() -> None:
 
 def test_walls_are_no_objects_and_the_nearest_of_the_others_comes_first() -> None:
     map = LocalMap(MotionParameters())
+    map.evidence[:] = -1  # seen to be free
     for x0, y0, x1, y1 in ((5.0, 5.0, 5.5, 5.5), (-4.0, 1.0, -3.0, 2.0), (-8.0, -6.0, 9.0, -5.75)):
         a, b = map.cell(x0, y0), map.cell(x1, y1)
         map.evidence[a.i : b.i + 1, a.j : b.j + 1] = 6
     things = things_around(map, (0.0, 0.0, 0.0))
     assert [round(thing.x_m) for thing in things] == [-3, 5] or [round(thing.x_m) for thing in things] == [-4, 5]
+
+
+def test_a_strip_of_wall_that_goes_on_out_of_sight_is_no_object() -> None:
+    map = LocalMap(MotionParameters())
+    map.evidence[map.cell(0.0, -6.0).i : map.cell(5.0, 0.0).i, :] = -1
+    for y0, y1 in ((-0.6, 0.6), (2.0, 3.0)):
+        a, b = map.cell(5.0, y0), map.cell(5.3, y1)
+        map.evidence[a.i : b.i + 1, a.j : b.j + 1] = 6
+    assert things_around(map, (0.0, 0.0, 0.0)) == []
+    map.evidence[map.cell(5.0, 0.0).i :, :][map.evidence[map.cell(5.0, 0.0).i :, :] == 0] = -1
+    assert len(things_around(map, (0.0, 0.0, 0.0))) == 2
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -34,18 +35,18 @@ def trip(scenario: Play, world: Path, loops: int, seed: int) -> Run:
     return scenario(str(world), mission="trip2.xml", platform="car", start="0.5,12,90", ports=ports, seed=seed, max_time_s=90.0 * loops)
 
 
-@pytest.mark.parametrize("seed", [3, 8, 21])
+@pytest.mark.parametrize("seed", [8, 21])
 def test_the_trip_closes_its_loop_again_and_again_with_a_gyro_that_drifts(seed: int) -> None:
     """`pluto bench trips` has 40 seeds and 100 loops."""
-    run = trips.trip(seed, 5)
+    run = trips.trip(seed, 4)
     assert (run.result, run.reason, run.collisions) == ("SUCCESS", "", 0), run.text
-    assert run.blackboard["loops"] == 5
+    assert run.blackboard["loops"] == 4
     assert run.min_clearance_m > 0.2
     assert run.final_pose is not None and run.estimated_pose is not None
     assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.15
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", [0, 1])
 def test_the_markers_may_hang_anywhere_and_point_anywhere(seed: int) -> None:
     run = trips.trip(seed, 2, anywhere=True)
     assert (run.result, run.collisions, run.blackboard["loops"]) == ("SUCCESS", 0, 2), run.text
@@ -73,6 +74,49 @@ def test_something_put_in_its_way_ends_the_trip(scenario: Play, corridor: Path, 
     assert run.runner.system.simulator.velocity == pytest.approx((0.0, 0.0), abs=1e-3)
 
 
+BARE = re.sub(r"<marker.*?/>", "", CORRIDOR)
+ROOM_ASIDE = re.sub(r'(<area id="floor".*?>).*?</area>', r"\g<1>0,0 1,0 1,16 3.13,16 3.13,19.78 0,19.78</area>", CORRIDOR)
+HELD = CORRIDOR.replace(ROBOT, '<script><at t="1"><fault device="base" kind="blocked"/></at></script>' + ROBOT)
+CLAUSES = [  # what, the leaf, the world, result and reason, at what time at the latest, how far it may have driven
+    ("a goal outside the map is refused", '<CarGoTo goal="4;12"/>', CORRIDOR, "FAILURE outside-map", 0.1, 0.0),
+    ("a way out of the map is not begun", '<CarGoTo goal="2.8;17"/>', ROOM_ASIDE, "FAILURE outside-map", 0.3, 0.0),
+    ("without an accepted marker it does not start", '<CarGoTo goal="0.5;17"/>', BARE, "FAILURE no-pose", 5.2, 0.0),
+    ("a turn needs no marker", '<MakeTurn angle_deg="90"/>', BARE, "SUCCESS ", 10.0, 3.0),
+    ("wheels that are held end a goto", '<CarGoTo goal="0.5;17"/>', HELD, "FAILURE hindered", 4.5, 0.2),
+    ("a turn is given up after 30 s", '<MakeTurn angle_deg="180"/>', HELD, "FAILURE timeout", 30.2, 0.3),
+    ("0 is done at once", '<MakeTurn angle_deg="0"/>', CORRIDOR, "SUCCESS ", 0.1, 0.0),
+    ("so is a whole turn", '<MakeTurn angle_deg="-360"/>', CORRIDOR, "SUCCESS ", 0.1, 0.0),
+]
+
+
+@pytest.mark.parametrize(("leaf", "world", "ends", "latest_s", "farthest_m"), [row[1:] for row in CLAUSES], ids=[row[0] for row in CLAUSES])
+def test_clauses_of_goto_and_maketurn(
+    scenario: Play, corridor: Path, leaf: str, world: str, ends: str, latest_s: float, farthest_m: float
+) -> None:
+    corridor.write_text(world, encoding="utf-8")
+    mission = corridor.with_name("leaf.xml")
+    mission.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="main">{leaf}</BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(corridor), mission=str(mission), platform="car", start="0.5,12,90", max_time_s=60.0)
+    assert f"{run.result} {run.reason}" == ends, run.text
+    assert run.sim_time_s <= latest_s
+    assert run.distance_m <= farthest_m
+    assert run.runner.system.simulator.velocity == pytest.approx((0.0, 0.0), abs=2e-3)
+
+
+@pytest.mark.parametrize("angle_deg", [90.0, -90.0, 170.0, -45.0])
+@pytest.mark.parametrize("platform", ["car", "atrv2", "pioneer", "jbot"])
+def test_maketurn_is_relative_and_clockwise_on_every_robot(scenario: Play, corridor: Path, platform: str, angle_deg: float) -> None:
+    corridor.write_text('<world name="field"><robot platform="car" x="0" y="0" theta_deg="30"/></world>', encoding="utf-8")
+    mission = corridor.with_name("turn.xml")
+    mission.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="main"><MakeTurn angle_deg="{angle_deg}"/></BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(corridor), mission=str(mission), platform=platform, start="0,0,30", max_time_s=60.0)
+    assert run.result == "SUCCESS", run.text
+    turned_deg = -math.degrees(math.remainder(run.final_pose[2] - math.radians(30.0), math.tau))
+    off_deg = 45.0 if platform == "car" else 10.0  # a car rolls on for half a metre, and nobody steers it any more
+    assert abs(math.remainder(turned_deg - angle_deg, 360.0)) < off_deg
+    assert platform == "car" or run.distance_m < 0.05, "in place"
+
+
 # for twenty seconds of the second step: device, kind, and the word with which the trip ends ("" = it goes on)
 FAULTS = [
     ("marker", "off", ""), ("marker", "frozen", ""), ("marker", "nan", ""), ("marker", "garbage", ""), ("marker", "late", ""),
@@ -90,3 +134,26 @@ def test_a_fault_of_its_own_sensors_never_drives_it_into_a_wall(scenario: Play, 
     assert run.collisions == 0
     assert run.reason == ends, run.text
     assert run.exit_code == {"": 0, "base-lost": 3}.get(ends, 1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "result", "reason"),
+    [('kind="jump" value="0.3"', "SUCCESS", ""), ('kind="jump" value="-0.05"', "SUCCESS", ""), ('kind="stuck"', "FAILURE", "lost"),
+     ('kind="garbage"', "FAILURE", "lost")],
+)  # fmt: skip
+def test_a_gyro_that_lies_is_found_out_by_the_markers(scenario: Play, corridor: Path, kind: str, result: str, reason: str) -> None:
+    """What the markers agree upon puts the heading right; a drift is taken off; a gyro that makes no sense stops the car."""
+    script = f'<script><at t="10"><fault device="imu" {kind}/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 1, 3)
+    assert (run.result, run.reason, run.collisions) == (result, reason, 0), run.text
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.3
+    assert run.said("gyro-drift") or run.said("gyro-refused")
+
+
+def test_markers_that_are_all_off_by_two_metres_are_told(scenario: Play, corridor: Path) -> None:
+    script = '<script><at t="10"><fault device="marker" kind="jump" value="2"/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 1, 3)
+    assert run.collisions == 0 and run.result == "FAILURE"
+    assert "moves the position by 2.8 m" in run.said("pose-jump")[0]

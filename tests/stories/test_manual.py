@@ -189,6 +189,18 @@ def test_a_goto_goes_on_when_motion_alone_is_stopped(robot: Make) -> None:
     assert r.run(30.0, lambda: r.status_of("avoid").element == (0, 1))
 
 
+def test_what_was_posted_while_avoidance_was_stopped_is_dropped_and_not_shown_as_running(robot: Make) -> None:
+    r = robot()
+    r.module("avoid", False)
+    r.order(32, (8.0, 0.0), (0.5, 0.0))
+    r.run(0.5)
+    assert r.status.element == (-10, -10, 0, 0)
+    r.module("avoid", True)
+    r.run(1.0)
+    assert r.status.element == (0, 0, 0, 0)
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+
+
 # ------------------------------------------------------------------ every status code by name
 
 
@@ -267,6 +279,15 @@ def test_element_0_is_7_while_the_laser_reboots(robot: Make, flags: int) -> None
         r.order(flags, (20.0, 0.0) if flags % 10 == 2 else (0.0, 0.0), (0.3, 0.0))
         r.run(1.0)
     assert r.status.element[0] == 0 and r.velocity[0] > 0.2, "it has rebooted"
+
+
+def test_element_0_is_7_also_at_rest_while_the_laser_reboots(robot: Make) -> None:
+    r = robot(script='<at t="3"><fault device="laser" kind="fatal"/></at>')
+    r.order(32, (0.6, 0.0), (0.5, 0.0))
+    r.run(6.0)
+    assert r.status.element == (7, 1, 0, 0), "reached stays as well"
+    r.run(20.0)
+    assert r.status.element == (0, 1, 0, 0)
 
 
 def test_element_1_by_a_goto_from_running_to_reached_and_stuck(robot: Make) -> None:
@@ -372,3 +393,16 @@ def test_data_follow_the_true_velocities_through_a_minute_of_driving_by_hand(rob
         r.run(4.0, look)
     assert sum(errors) / len(errors) < 0.03, "the motors' lag alone"
     assert max(errors) < 0.2
+
+
+@pytest.mark.parametrize("platform", ["jbot", "car"])
+def test_a_robot_without_a_laser_says_that_it_cannot_do_the_jobs_of_motion(robot: Make, platform: str) -> None:
+    r = robot(platform=platform)
+    for flags in (42, 43, 44, 45):
+        r.order(flags, (3.0, 0.0), (2.0, 3.0) if flags == 44 else (0.0, 0.0))
+        r.run(1.0)
+        assert (r.status.element, r.status.reason) == ((0, 0, 0, 0), "no-device")
+    r.order(46, velocity=(4.0, 6.0))
+    r.run(0.2)
+    assert r.status.element == (0, 0, 0, -1), "a rectangle can be set all the same"
+    assert r.pose[:2] == (0.0, 0.0)

@@ -122,6 +122,8 @@ def test_the_shell_and_ps_are_clients_too(robot: Robot) -> None:
     modules = {row["name"]: row["state"] for row in json.loads(listed.stdout)["modules"]}
     assert modules["drive"] == modules["executive"] == modules["gateway"] == "running"
     assert "GoTo" in robot.pluto("shell", where, "tree").stdout
+    drawn = robot.pluto("tree", "--gateway", where, "--format", "ascii").stdout
+    assert re.match(r'\{c\} Sequence "patrol"  \[\* RUNNING [\d.]+ s', drawn), drawn
 
 
 def test_rubbish_and_silent_clients_disturb_nobody(robot: Robot) -> None:

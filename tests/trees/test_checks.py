@@ -313,3 +313,39 @@ FOREIGN = [
 def test_nodes_of_other_systems_are_known_by_their_model(body: str, faults: list[str], tmp_path: Any) -> None:
     (tmp_path / "models.xml").write_text(MODELS)
     assert told(body, models=[tmp_path / "models.xml"]) == faults
+
+
+def test_a_model_of_another_node_of_the_same_name_goes_before_ours_but_not_before_the_formats(tmp_path: Any) -> None:
+    (tmp_path / "models.xml").write_text('''<root BTCPP_format="4"><TreeNodesModel><Action ID="GoTo"><input_port name="pose"/></Action>
+      <Action ID="Say"><input_port name="text"/></Action><Action ID="Sleep"><input_port name="hours"/></Action></TreeNodesModel></root>''')
+    models = [tmp_path / "models.xml"]
+    assert told('<GoTo pose="a"/>', models=models) == []
+    assert told('<GoTo pose="a"/>') == ["2:1 error missing-port", "2:7 error unknown-port"]
+    assert told("<Say/>", models=models) == told("<Say/>") == ["2:1 error missing-port"]
+    assert told('<Sleep hours="8"/>', models=models) == ["2:1 error missing-port", "2:8 error unknown-port"]
+
+
+UNUSED = [
+    # what it shows                            further trees                                                                  faults in line 4
+    ("alone", tree("B", OK), ["1 warning unused-tree"]),
+    ("used by an unused one", tree("B", '<SubTree ID="C"/>') + tree("C", OK), ["1 warning unused-tree", "54 warning unused-tree"]),
+    ("names what is not there", tree("B", '<SubTree ID="Nix"/>'), ["1 warning unused-tree", "35 warning unknown-tree"]),
+    ("a circle beside the main tree", tree("B", '<SubTree ID="C"/>') + tree("C", '<SubTree ID="B"/>'),
+     ["1 warning unused-tree", "54 warning unused-tree", "88 warning recursion"]),
+    ("a tree of the library is known", tree("B", '<SubTree ID="Escape"/>'), ["1 warning unused-tree"]),
+    ("a broken node in it is an error all the same", tree("B", "<Foo/>"), ["22 error unknown-node"]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("more", "faults"), [row[1:] for row in UNUSED], ids=[row[0] for row in UNUSED])
+def test_trees_that_the_main_tree_does_not_use(more: str, faults: list[str]) -> None:
+    assert told(OK, more) == [f"4:{fault}" for fault in faults]
+
+
+def test_all_faults_are_told_though_an_included_file_is_missing() -> None:
+    """What may be in that file is not called unknown; all else is."""
+    text = ('''<root BTCPP_format="4" main_tree_to_execute="A"><include path="nowhere.xml"/><BehaviorTree ID="A"><Sequence>
+<SubTree ID="FromThere"/><Foo/><Sleep msec="{t}"/><Sleep msec="x"/><Parallel success_count="2"><AlwaysSuccess/></Parallel>
+</Sequence></BehaviorTree></root>''')
+    assert [fault.code for fault in check_mission(text)] == ["no-file", "unknown-node", "unset-key", "bad-literal", "threshold"]
+    assert check_mission(text.replace('execute="A"', 'execute="FromThere"'))[0].code == "no-file"

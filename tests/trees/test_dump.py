@@ -79,6 +79,15 @@ def test_the_file_for_groot_runs_as_the_original_does(mission: Mission) -> None:
     assert dump(again, "xml") == dump(mission, "xml")
 
 
+def test_the_file_for_groot_keeps_the_comments_inside_of_trees() -> None:
+    text = TEXT.replace("<Sleep", "<!-- a while --><Sleep").replace("<AlwaysFailure/>", "<!-- on -->\n<AlwaysFailure/><!-- purpose -->")
+    lines = [line.strip() for line in dump(load_mission(text), "xml").splitlines()]
+    at = lines.index("<!-- a while -->")
+    assert lines[at + 1] == '<Sleep msec="100"/>'
+    at = lines.index("<!-- on -->")
+    assert lines[at + 1 : at + 4] == ["<AlwaysFailure/>", "<!-- purpose -->", "</Inverter>"]
+
+
 def test_an_unknown_format_is_refused(mission: Mission) -> None:
     with pytest.raises(ValueError, match="unknown format 'png'; one of: ascii, unicode, dot, svg, xhtml, xml"):
         dump(mission, "png")

@@ -141,7 +141,7 @@ DOCUMENTS = [
      ["1:1 error no-main-tree: which tree is the main one is not said"]),
     (f'<root BTCPP_format="4">{GOOD}<BehaviorTree ID="B"><SubTree ID="A"/></BehaviorTree></root>', []),
     (f'<root BTCPP_format="4" main_tree_to_execute="A">{GOOD}<BehaviorTree ID="B"><AlwaysSuccess/></BehaviorTree></root>',
-     ["1:101 warning unused-tree: tree 'B' is not used by 'A'"]),
+     ["1:101 warning unused-tree: tree 'B' is not used"]),
     (f'<root BTCPP_format="4"><TreeNodesModel/><TreeNodesModel/>{GOOD}</root>', ["1:41 error second-model: a second <TreeNodesModel>"]),
     (f'<root BTCPP_format="4"><TreeNodesModel><SubTree ID="A"><input_port/></SubTree></TreeNodesModel>{GOOD}</root>',
      ["1:56 error missing-name: this port has no name"]),

@@ -13,6 +13,7 @@ from pluto_bt.trees.checks.flow import Flow
 from pluto_bt.trees.checks.outcomes import Ends, outcome
 from pluto_bt.trees.checks.reach import check_reach
 from pluto_bt.trees.checks.robot_words import check_words
+from pluto_bt.trees.checks.unused import check_unused
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.load import Reading, no_collecting, read_mission
 from pluto_bt.trees.scopes import Topics
@@ -56,6 +57,7 @@ def examine_mission(
         reading = read_mission(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
         if whole and reading.plan is not None and reading.main is not None and not reading.report.faults.is_full:
             _check_whole(reading, reading.plan)
+        check_unused(reading.unused, reading.files, reading.types, reading.report)
         return Examined(reading.report.faults.in_order(), reading.plan)
 
 

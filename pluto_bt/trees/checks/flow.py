@@ -35,8 +35,9 @@ class Flow:
         self._written: set[Home] = set()
         self._in_rounds: frozenset[Home] = frozenset()  # what the nodes that are ticked again and again may write
         self._writers: dict[Home, Place] = {}
+        self._uses: dict[int, tuple[list[Use], list[Use]]] = {}  # by id of a plan: before its children are ticked, and after
         self._told = {(fault.file, fault.line, fault.column) for fault in report.faults.in_order() if fault.severity == "error"}
-        self._is_closed = True
+        self._is_closed = True  # no leaf but ours, which write what their ports tell and nothing else
         self._loose: set[str] = set()  # keys that nodes name of which nothing is known
 
     def run(self, nodes: list[Plan]) -> None:
@@ -44,24 +45,25 @@ class Flow:
         self._is_closed = all(plan.node_type is None or plan.node_type.is_ours for plan in nodes)
         for plan in nodes:
             self._loose.update(_unknown_keys(plan))
-            for use in (*uses_before(plan), *uses_after(plan)):
+            self._uses[id(plan)] = before, after = uses_before(plan), uses_after(plan)
+            for use in (*before, *after):
                 if use.how == "write":
                     self._writers.setdefault(self._home(plan.scope, use.key), use.place)
         self._visit(nodes[0], certain=True)
 
     def _visit(self, plan: Plan, certain: bool) -> None:
         certain = certain and not any(name in plan.element.attributes for name in GUARDS)
-        self._take(plan, uses_before(plan), certain)
+        before, after = self._uses[id(plan)]
+        self._take(plan, before, certain)
         outer = self._in_rounds
         if plan.children and not outer and plan.type_name not in ONCE:
-            self._in_rounds = frozenset(
-                self._home(one.scope, use.key) for one in plan.walk() for use in (*uses_before(one), *uses_after(one)) if use.how == "write"
-            )
+            uses = [(one.scope, use) for one in plan.walk() for some in self._uses[id(one)] for use in some]
+            self._in_rounds = frozenset(self._home(scope, use.key) for scope, use in uses if use.how == "write")
         for child in plan.children:
             self._visit(child, certain)
             certain = certain and self._ends[id(child)] == S
         self._in_rounds = outer
-        self._take(plan, uses_after(plan), certain=False)
+        self._take(plan, after, certain=False)
 
     def _take(self, plan: Plan, uses: list[Use], certain: bool) -> None:
         for use in uses:

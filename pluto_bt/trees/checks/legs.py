@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 from typing import Any, Final
 
+from pluto_bt.behaviours.destinations import Destination, Destinations
 from pluto_bt.source import Place
 from pluto_bt.trees.checks.entries import Home, home_of, uses_after, uses_before
 from pluto_bt.trees.loader.expand import Plan
@@ -29,7 +30,7 @@ class Leg:
     """One drive to a known goal.
 
     Attributes:
-        way: "straight", or "found" where the leaf looks for a way itself.
+        way: "straight", "found" where the leaf looks for a way as it goes, "planned" where it plans one on the map.
         start: where the leg before ended; None if that is not known.
         goal: x m, y m, map frame; a name of a goal of the map is kept as text.
         tolerance_m: nearer counts as reached.
@@ -100,29 +101,33 @@ class Course:
             return None if getattr(make, "DRIVES", False) else at
         if way == STAYS:
             return at
-        ports = plan.node_type.ports
-        goal = self._goal(plan, ports["goal"])
-        if goal is None:
-            return None
-        step = id(plan.element), at, goal
+        port = next((plan.node_type.ports[name] for name in ("goal", "goals") if name in plan.node_type.ports), None)
+        goals = self._goals(plan, port) if port is not None else []
+        for goal in goals:
+            self._add(plan, way, at, goal, plan.element.attributes[port.name].value_place if port is not None else plan.element.place)
+            at = goal if isinstance(goal, tuple) else None
+        return at if goals else None
+
+    def _add(self, plan: Plan, way: str, at: Point | None, goal: Point | str, place: Place) -> None:
+        assert plan.node_type is not None  # the caller looked
+        ports, step = plan.node_type.ports, (id(plan.element), at, goal)
         if step not in self._seen:
             self._seen.add(step)
             tolerance_m = self._number(plan, ports.get("tolerance_m"), 0.3)
             speed_mps = self._number(plan, ports.get("max_speed_mps"), math.inf)
-            self.legs.append(Leg(plan, plan.element.attributes["goal"].value_place, way, at, goal, tolerance_m, speed_mps))
-        return goal if isinstance(goal, tuple) else None
+            self.legs.append(Leg(plan, place, way, at, goal, tolerance_m, speed_mps))
 
-    def _goal(self, plan: Plan, port: PortModel) -> Point | str | None:
+    def _goals(self, plan: Plan, port: PortModel) -> list[Point | str]:
+        """The goals that the port names, if they are known."""
         text = self._text(plan, port.name)
         if text is None:
-            return None
+            return []
         try:
             value = port.kind.convert(text)
         except PortProblem:
-            return None  # told by the static check
-        if isinstance(value, str):
-            return value
-        return (float(value[0]), float(value[1])) if isinstance(value, tuple) and len(value) >= 2 and all(map(math.isfinite, value)) else None
+            return []  # told by the static check
+        goals = [_place_of(one) for one in (value if isinstance(value, Destinations) else [value])]
+        return [goal for goal in goals if goal is not None]
 
     def _number(self, plan: Plan, port: PortModel | None, otherwise: float) -> float:
         if port is None:
@@ -148,6 +153,14 @@ class Course:
         if entry is None or entry.value is EMPTY or (home in self._written and port != "queue"):
             return None
         return str(entry.value)
+
+
+def _place_of(value: object) -> Point | str | None:
+    """A goal as a leg has it."""
+    if isinstance(value, Destination):
+        return value.name or (value.x_m, value.y_m)
+    is_point = isinstance(value, tuple) and len(value) >= 2 and all(isinstance(part, float) and math.isfinite(part) for part in value)
+    return (value[0], value[1]) if is_point and isinstance(value, tuple) else None
 
 
 def home_key(plan: Plan, key: str) -> Home:

@@ -132,10 +132,10 @@ def _branches(children: Sequence[Ends]) -> Outcome:
 def _decorator(plan: Plan, child: Ends) -> Outcome:
     name, get = plan.type_name, plan.element.get
     cycles, attempts = _count(get("num_cycles")), _count(get("num_attempts"))
-    if name == "Repeat" and cycles == 0:
-        return Outcome(S, {0: "num_cycles is 0"})
-    if name == "RetryUntilSuccessful" and attempts == 0:
-        return Outcome(F, {0: "num_attempts is 0"})
+    if name == "Repeat" and cycles is not None and cycles <= 0 and cycles != -1:
+        return Outcome(S, {0: f"num_cycles is {cycles}"})
+    if name == "RetryUntilSuccessful" and attempts is not None and attempts <= 0 and attempts != -1:
+        return Outcome(F, {0: f"num_attempts is {attempts}"})
     if name == "Precondition":
         says, other = constant_truth(get("if")), ANSWERS.get(get("else") or "FAILURE", NEVER)
         return Outcome(other, {0: "the condition is always false"}) if says is False else Outcome(child | (NEVER if says else other), {})

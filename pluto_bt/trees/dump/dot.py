@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 
 from pluto_bt.trees.dump.model import COLOURS, Drawn
-from pluto_bt.trees.dump.text import one_line
+from pluto_bt.trees.dump.text import details
 
 SHAPES = {"Control": "box", "Decorator": "hexagon", "SubTree": "folder", "Action": "ellipse", "Condition": "diamond"}
 
@@ -20,7 +20,7 @@ def dot(root: Drawn) -> str:
 def _add(node: Drawn, numbers: itertools.count[int], lines: list[str]) -> int:
     number = next(numbers)
     fill, line = COLOURS[node.status]
-    label = "\n".join([node.title, *(f"{name}={one_line(value, 40)}" for name, value in node.ports + node.conditions)])
+    label = "\n".join([node.title, *details(node, 40)])
     tip = f"{node.status} {node.feedback}".strip()
     shape = SHAPES[node.kind]
     lines.append(f'  n{number} [label={_quoted(label)}, shape={shape}, fillcolor="{fill}", color="{line}", tooltip={_quoted(tip)}];')

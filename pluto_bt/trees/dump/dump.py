@@ -14,8 +14,9 @@ from pluto_bt.trees.dump.xhtml import xhtml
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.mission import Mission
 
-FORMATS: Final = ("ascii", "unicode", "dot", "svg", "xhtml", "xml")
 _PICTURES: Final[dict[str, Callable[[Drawn], str]]] = {"ascii": ascii_tree, "unicode": unicode_tree, "dot": dot, "svg": svg, "xhtml": xhtml}
+PICTURES: Final = tuple(_PICTURES)
+FORMATS: Final = (*PICTURES, "xml")
 
 
 def dump(what: Mission | Plan, form: str = "unicode", *, statuses: bool = True) -> str:
@@ -30,4 +31,9 @@ def dump(what: Mission | Plan, form: str = "unicode", *, statuses: bool = True) 
     if form == "xml":
         return groot(plan)
     states = dict(zip((one.plan.uid for one in tracked), what.node_states(), strict=True)) if statuses and isinstance(what, Mission) else None
-    return _PICTURES[form](drawn(plan, states))
+    return draw(drawn(plan, states, what.now_s() if isinstance(what, Mission) else 0.0), form)
+
+
+def draw(root: Drawn, form: str) -> str:
+    """A tree that is drawn already, in one of `PICTURES`."""
+    return _PICTURES[form](root)

@@ -11,7 +11,7 @@ from pluto_bt.trees.loader.registry import NodeType
 
 
 def groot(plan: Plan) -> str:
-    """BehaviorTree.CPP v4 XML: includes are taken in, every attribute is kept."""
+    """BehaviorTree.CPP v4 XML: includes are taken in, every attribute is kept, and the comments inside of trees."""
     trees: dict[str, XmlElement] = {}
     types: dict[str, NodeType] = {}
     _collect(plan, _tree_of(plan), trees, types)
@@ -19,8 +19,7 @@ def groot(plan: Plan) -> str:
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', f'<root BTCPP_format="4" main_tree_to_execute="{attribute_text(main)}">']
     for tree_id, element in trees.items():
         lines.append(f'  <BehaviorTree ID="{attribute_text(tree_id)}">')
-        for child in element.children:
-            _add_element(child, 2, lines)
+        _add_content(element, 2, lines)
         lines.append("  </BehaviorTree>")
     lines.append("  <TreeNodesModel>")
     for name in sorted(types):
@@ -45,15 +44,26 @@ def _collect(plan: Plan, tree: XmlElement, trees: dict[str, XmlElement], types: 
         _collect(child, _tree_of(child) if plan.node_type is None else tree, trees, types)
 
 
+def _add_content(element: XmlElement, level: int, lines: list[str]) -> None:
+    """Children and comments in their order."""
+    notes = list(element.comments)
+    for i in range(len(element.children) + 1):
+        while notes and notes[0].child_index == i:
+            note = notes.pop(0)
+            text = note.text.replace("--", "- -") + ("" if note.text[-1:] != "-" else " ")  # other parsers take "--" for the end
+            lines.append(f"{'  ' * level}<?{note.text}?>" if note.is_instruction else f"{'  ' * level}<!--{text}-->")
+        if i < len(element.children):
+            _add_element(element.children[i], level, lines)
+
+
 def _add_element(element: XmlElement, level: int, lines: list[str]) -> None:
     indent = "  " * level
     attributes = "".join(f' {name}="{attribute_text(one.value)}"' for name, one in element.attributes.items())
-    if not element.children:
+    if not element.children and not element.comments:
         lines.append(f"{indent}<{element.tag}{attributes}/>")
         return
     lines.append(f"{indent}<{element.tag}{attributes}>")
-    for child in element.children:
-        _add_element(child, level + 1, lines)
+    _add_content(element, level + 1, lines)
     lines.append(f"{indent}</{element.tag}>")
 
 

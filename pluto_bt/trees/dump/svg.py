@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from xml.sax.saxutils import escape, quoteattr
 
 from pluto_bt.trees.dump.model import COLOURS, SIGNS, Drawn
-from pluto_bt.trees.dump.text import one_line
+from pluto_bt.trees.dump.text import details
 
 HEAD_PX, LINE_TEXT_PX = 8.2, 6.9  # a letter of the bold head and of the lines under it; wide letters are caught by the padding
 PADDING_PX = 10.0
@@ -48,9 +48,7 @@ def svg(root: Drawn) -> str:
 
 
 def _measured(node: Drawn, level: int, columns: list[float]) -> Box:
-    lines = [f"{SIGNS[node.kind][1]} {node.title}", *(f"{name} = {one_line(value, 44)}" for name, value in node.ports + node.conditions)]
-    if node.feedback:
-        lines.append(f"» {one_line(node.feedback, 44)}")
+    lines = [f"{SIGNS[node.kind][1]} {node.title}", *details(node, 44)]
     width = max(len(lines[0]) * HEAD_PX, *(len(line) * LINE_TEXT_PX for line in lines)) + 2 * PADDING_PX
     if level == len(columns):
         columns.append(0.0)

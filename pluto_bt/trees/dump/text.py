@@ -19,7 +19,7 @@ def ascii_tree(root: Drawn) -> str:
 
 def _ascii(node: Drawn, level: int) -> Iterator[str]:
     title = node.title.replace("“", '"').replace("”", '"')
-    line = f"{'    ' * level}{SIGNS[node.kind][0]} {title}{_details(node)}{_status(node, MARKS)}"
+    line = f"{'    ' * level}{SIGNS[node.kind][0]} {title}{_ports(node)}{_status(node, MARKS)}"
     yield line.translate(PLAIN_SIGNS).encode("ascii", "backslashreplace").decode()
     for child in node.children:
         yield from _ascii(child, level + 1)
@@ -40,10 +40,10 @@ def _add_children(node: Drawn, indent: str, lines: list[str]) -> None:
 
 
 def _unicode_line(node: Drawn) -> str:
-    return f"{SIGNS[node.kind][1]} {node.title}{_details(node)}{_status(node, PRETTY_MARKS)}"
+    return f"{SIGNS[node.kind][1]} {node.title}{_ports(node)}{_status(node, PRETTY_MARKS)}"
 
 
-def _details(node: Drawn) -> str:
+def _ports(node: Drawn) -> str:
     """Ports and conditions, in one line."""
     words = [f"{name}={one_line(value)}" for name, value in node.ports + node.conditions]
     return "  " + " ".join(words) if words else ""
@@ -53,7 +53,15 @@ def _status(node: Drawn, marks: dict[str, str]) -> str:
     if not node.status:
         return ""
     feedback = f" – {one_line(node.feedback)}" if node.feedback else ""
-    return f"  [{marks[node.status]} {node.status}{feedback}]"
+    return f"  [{marks[node.status]} {node.state}{feedback}]"
+
+
+def details(node: Drawn, longest: int) -> list[str]:
+    """What stands in a box under the title: ports and conditions, its state unless it is idle, what it says."""
+    lines = [f"{name} = {one_line(value, longest)}" for name, value in node.ports + node.conditions]
+    if node.status not in ("", "IDLE"):
+        lines.append(f"{PRETTY_MARKS[node.status]} {node.state}")
+    return [*lines, f"– {one_line(node.feedback, longest)}"] if node.feedback else lines
 
 
 def one_line(text: str, longest: int = 60) -> str:

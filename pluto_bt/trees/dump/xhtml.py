@@ -11,6 +11,7 @@ body { font: 14px/1.5 system-ui, sans-serif; margin: 1.5em; color: #1f2328 }
 details, .leaf { margin-left: 1.4em } summary { cursor: pointer }
 .node { border: 1px solid; border-radius: 5px; padding: 0 .5em; display: inline-block; margin: 2px 0 }
 .ports { color: #57606a; font-family: ui-monospace, monospace; font-size: 12px } .feedback { font-style: italic }
+.state { font-size: 12px; font-weight: 600 }
 """
 
 
@@ -30,7 +31,7 @@ def _add(node: Drawn, parts: list[str]) -> None:
     ports = " ".join(f'{escape(name)}="{escape(value)}"' for name, value in node.ports + node.conditions)
     words = [f"{SIGNS[node.kind][1]} <b>{escape(node.title)}</b>"]
     words += [f'<span class="ports">{ports}</span>'] if ports else []
-    words += [node.status] if node.status else []
+    words += [f'<span class="state">{node.state}</span>'] if node.status else []
     words += [f'<span class="feedback">{escape(node.feedback)}</span>'] if node.feedback else []
     shown = f'<span class="node s{node.status or "NONE"}">{" ".join(words)}</span>'
     if not node.children:

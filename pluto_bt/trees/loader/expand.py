@@ -127,6 +127,8 @@ class Expansion:
         if attribute is None or attribute.value in self._types:
             return None  # told by the static check
         tree = self._files.trees.get(attribute.value)
+        if tree is None and not self._files.is_whole:
+            return None  # it may be in the file that could not be read
         if tree is None:
             mend, what = did_you_mean(attribute.value, self._files.trees), f"there is no tree {attribute.value!r}"
             known = "one of: " + ", ".join(self._files.trees)

@@ -13,7 +13,7 @@ from pluto_bt.trees.loader.version3 import SUBTREE_HINT
 from pluto_bt.trees.ports import Direction
 
 MAX_INCLUDES = 50  # levels
-ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include")
+ROOT_CHILDREN = ("BehaviorTree", "TreeNodesModel", "include", "Contract")
 
 
 @dataclass(slots=True)
@@ -61,7 +61,9 @@ class MissionFiles:
     subtree_models: dict[str, Model] = field(default_factory=dict)
     node_models: dict[str, Model] = field(default_factory=dict)
     root: XmlElement | None = None
+    is_whole: bool = True  # False if an included file could not be read: its trees are not known
     unnamed: int = 0
+    contracts: list[XmlElement] = field(default_factory=list)
     paths: list[str] = field(default_factory=list)  # of all files that were read, but those of the library
     _open: list[str] = field(default_factory=list)
     _read: set[str] = field(default_factory=set)
@@ -119,6 +121,8 @@ class MissionFiles:
         for element in root.children:
             if element.tag == "BehaviorTree":
                 self._take_tree(element, alone=len(root.children) == 1)
+            elif element.tag == "Contract":
+                self.contracts.append(element)
             elif element.tag not in ROOT_CHILDREN:
                 mend = did_you_mean(element.tag, ROOT_CHILDREN)
                 what = f"<{element.tag}> means nothing here and is ignored"
@@ -151,35 +155,39 @@ class MissionFiles:
         self.all_trees.append(tree)
 
     def _include(self, element: XmlElement, shown: str, folder: Path) -> None:
+        self.is_whole = self._read_included(element, shown, folder) and self.is_whole
+
+    def _read_included(self, element: XmlElement, shown: str, folder: Path) -> bool:
+        """Read what an `<include>` names; False and a fault if that cannot be."""
         attribute = element.attributes.get("path")
         if attribute is None:
             self.faults.error(element.place, "missing-path", "this include has no path", expected='path="FILE.xml"')
-            return
+            return False
         path = Path(attribute.value)
         if "ros_pkg" in element.attributes and not path.is_absolute():
             place = element.attributes["ros_pkg"].place
             self.faults.error(place, "ros-package", "there are no ROS packages here", expected="a path relative to this file", mend="drop ros_pkg")
-            return
+            return False
         if "ros_pkg" in element.attributes:
-            self.faults.warning(element.attributes["ros_pkg"].place, "ros-package", "ros_pkg is ignored beside an absolute path")
-        self._read_include(folder / path, os.path.join(os.path.dirname(shown), attribute.value), attribute)
+            self.faults.warning(element.attributes["ros_pkg"].place, "ros-package", "ros_pkg is ignored beside an absolute path", mend="drop ros_pkg")
+        return self._read_include(folder / path, os.path.join(os.path.dirname(shown), attribute.value), attribute)
 
-    def _read_include(self, path: Path, shown: str, attribute: XmlAttribute) -> None:
+    def _read_include(self, path: Path, shown: str, attribute: XmlAttribute) -> bool:
         real = os.path.realpath(path)
         if real in self._open:
             chain = " → ".join(Path(file).name for file in [*self._open[self._open.index(real) :], real])
             self.faults.error(attribute.value_place, "include-cycle", "the file includes itself", expected="no circle", found=chain)
-            return
+            return True  # its trees are known
         if len(self._open) >= MAX_INCLUDES:
             what = "files include one another too deeply"
             self.faults.error(attribute.value_place, "too-deep", what, expected=f"at most {MAX_INCLUDES} levels", found="more")
-            return
+            return False
         if not os.path.isfile(path):
             mend, what = did_you_mean(path.name, _neighbours(path)), f"there is no file {attribute.value!r}"
             self.faults.error(attribute.value_place, "no-file", what, expected="a mission file", found=shown, mend=mend)
-            return
+            return False
         if real in self._read:
-            return  # its trees are here already
+            return True  # its trees are here already
         self._read.add(real)
         self.paths.append(str(path))
         self._open.append(real)
@@ -187,6 +195,7 @@ class MissionFiles:
         if root is not None:
             self._take_document(root, shown, path.parent)
         self._open.pop()
+        return root is not None
 
     def _take_models(self, models: XmlElement) -> None:
         for element in models.children:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import Final
 
 from pluto_bt.source.xml_reader import XmlElement
@@ -22,6 +23,14 @@ KINDS: Final[dict[str, Kind]] = {
     "vector<bool>": kind_of_type(list[bool]), "vector<string>": kind_of_type(list[str]),
 }  # fmt: skip
 _CHILDREN: Final[dict[str, tuple[int, int | None]]] = {"Control": (1, None), "Decorator": (1, 1)}
+
+
+def add_models(types: dict[str, NodeType], models: Iterable[Model]) -> None:
+    """Make modelled nodes known. A leaf of ours gives way where the model has ports that it has not: the file means another node of that name."""
+    for model in models:
+        ours = types.get(model.name)
+        if ours is None or not (ours.builtin or model.ports.keys() <= ours.ports.keys()):
+            types[model.name] = foreign_type(model)
 
 
 def foreign_type(model: Model) -> NodeType:

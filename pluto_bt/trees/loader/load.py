@@ -5,24 +5,27 @@ from __future__ import annotations
 import contextlib
 import gc
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.trees.contracts import Contract
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
+from pluto_bt.trees.loader.contracts import read_contracts
 from pluto_bt.trees.loader.expand import Expansion, Plan
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
-from pluto_bt.trees.loader.foreign import foreign_type
+from pluto_bt.trees.loader.foreign import add_models
 from pluto_bt.trees.loader.inputs import set_inputs
 from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
-from pluto_bt.trees.mission import Mission, Origin
+from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.origin import Origin
 from pluto_bt.trees.scopes import Board, Topics
 
 
@@ -36,8 +39,10 @@ class Reading:
     report: Report
     main: TreeSource | None = None
     plan: Plan | None = None
+    unused: list[TreeSource] = field(default_factory=list)  # trees of the mission that the main tree does not use
     text: str = ""
     file: str = ""
+    contracts: Sequence[Contract] = ()
 
     @property
     def origin(self) -> Origin:
@@ -89,7 +94,9 @@ def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())
-    return Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
+    mission = Mission(reading.main.tree_id, root, construction.tracked, reading.board, context, reading.origin)
+    mission.contracts = tuple(reading.contracts)
+    return mission
 
 
 def plan_mission(text_or_path: str | Path, nodes: Iterable[Any] = (), *, tree: str | None = None, file: str | None = None) -> Plan:
@@ -118,9 +125,10 @@ def read_mission(
     _read_files(reading, text_or_path, file, models)
     if reading.files.root is None:
         return reading
-    is_whole = not faults.has_errors  # a tree of a file that could not be read must not be called unknown
+    has_frame = bool(reading.files.trees) or not faults.has_errors
+    reading.contracts = read_contracts(reading.files.contracts, reading.report)
     StaticCheck(reading.files, reading.types, reading.report).run()
-    if not is_whole:
+    if not has_frame:
         return reading
     reading.main = _main_tree(reading, tree)
     if reading.main is None:
@@ -133,10 +141,7 @@ def read_mission(
     expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
     reading.plan = expansion.run(reading.main)
     _tell_missing(reading)
-    for source in own_trees:
-        if source.tree_id not in expansion.used and not faults.has_errors:
-            what = f"tree {source.tree_id!r} is not used by {reading.main.tree_id!r}"
-            reading.report.warning(source.element.place, "unused-tree", what)
+    reading.unused = [source for source in own_trees if source.tree_id not in expansion.used]
     return reading
 
 
@@ -161,8 +166,7 @@ def _read_files(reading: Reading, text_or_path: str | Path, file: str | None, mo
     for path in models:
         reading.files.read_models(Path(path), str(path))
     if models:
-        for model in reading.files.node_models.values():
-            reading.types.setdefault(model.name, foreign_type(model))
+        add_models(reading.types, reading.files.node_models.values())
 
 
 def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
@@ -176,6 +180,8 @@ def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
     attribute = files.root.attributes.get("main_tree_to_execute")
     name = asked if asked is not None else attribute.value if attribute is not None else None
     if name is not None:
+        if name not in files.trees and not files.is_whole and asked is None:
+            return None  # it may be in the file that could not be read
         if name not in files.trees:
             place = main_place(files.root) if asked is None else Place("--tree")
             mend = did_you_mean(name, files.trees)
@@ -184,6 +190,8 @@ def _main_tree(reading: Reading, asked: str | None) -> TreeSource | None:
         return files.trees[name]
     if len(files.trees) == 1:
         return next(iter(files.trees.values()))
+    if files.unnamed or not files.is_whole:
+        return None  # told already: a tree has no ID, a file could not be read
     return _unreferenced(reading, known)
 
 

@@ -154,7 +154,8 @@ class StaticCheck:
                 what = f'port "{port.name}" of <{node_type.name}> is missing'
                 report(element.place, "missing-port", what, expected=f'{port.name}="…": {port.form}', found="nothing")
         if node_type.name.startswith("Switch") and "variable" not in element.attributes:
-            self._report.warning(element.place, "missing-port", f"<{node_type.name}> without variable always takes its last child")
+            what = f"<{node_type.name}> without variable always takes its last child"
+            self._report.warning(element.place, "missing-port", what, expected='variable="{key}"', found="nothing")
 
     def _check_port(self, attribute: XmlAttribute, node_type: NodeType) -> None:
         port = node_type.ports.get(attribute.name)

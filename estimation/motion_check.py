@@ -1,0 +1,227 @@
+"""Do gyro, wheels and laser tell of the same motion? Three witnesses; whoever stands alone is not believed.
+
+The laser sees how the robot moved since a scan of a moment ago (`scan_match`), and that is compared with what localisation reckons with:
+the turn (`turn_trial`), the way (`way_trial`), and whether the scan fits at all. One that fits nowhere near, followed by one that fits to it,
+was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from estimation.news import LOST, News
+from estimation.reckoning import Motion, Reckoning, Sums, motion_between
+from estimation.scan_match import ScanStep, match_scans
+from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
+from estimation.turn_trial import TurnTrial
+from estimation.way_trial import WayTrial
+
+Array = NDArray[np.float64]
+
+LEAST_BEAMS = 0.75  # of a scan must be numbers
+GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
+NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
+SIGMAS = 5.0
+FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
+LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
+KEY_WAY_M, KEY_TURN_RAD, KEY_S = 1.0, 0.5, 3.0  # a scan is compared with until the robot has moved on so far
+LONGEST_GAP_S = 60.0  # without usable scans: later the place may look different
+ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
+
+
+class Limits(NamedTuple):
+    """What the robot can do, and what its laser sees."""
+
+    speed_mps: float
+    turn_radps: float
+    max_range_m: float
+
+
+class KeyScan(NamedTuple):
+    """The scan that others are compared with; `arm`: the laser seen from the robot."""
+
+    at: Sums
+    ranges_m: Array
+    arm: Pose2
+
+
+class MotionCheck:
+    """Corrects each step of dead reckoning by what the witnesses have found out.
+
+    Attributes:
+        turn, way: the trials of gyro and wheels. fits: share of the last scan that was explained.
+        news: findings that nobody has told yet.
+    """
+
+    def __init__(self, limits: Limits, wheels_know_turns: bool, has_gyro: bool, judges_turns: bool) -> None:
+        """`has_gyro`: a sensor that drifts gives the heading. `judges_turns`: False where somebody wants the heading as its source gives it."""
+        self._limits, self._asks_wheels, self._has_gyro, self._judges_turns = limits, wheels_know_turns, has_gyro, judges_turns
+        self.news: list[News] = []
+        self.turn, self.way = TurnTrial(self.news, wheels_know_turns), WayTrial(self.news)
+        self._is_carried_off = False
+        self.fits = 1.0
+        self._reckoning = Reckoning()
+        self._key: KeyScan | None = None
+        self._is_elsewhere = False
+        self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
+        self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
+        self._matched_s = self._since_s = -math.inf
+        self._alone: Sums | None = None  # since then the gyro is watched by the wheels
+        self._looked_s = self._suspected_s = -math.inf  # stamps of the last scan, and of the last that told of a wrong way
+
+    @property
+    def lost(self) -> bool:
+        """True while nobody knows where the robot is, or where a car without gyro points: its wheels know of no turn."""
+        return self._is_carried_off or not (self.turn.trusts_gyro or self._asks_wheels)
+
+    # ---------------------------------------------------------------- steps
+
+    def step(self, stamp_s: float, dt_s: float, way_m: float, wheel_turn_rad: float, turn_rad: float, is_measured: bool) -> tuple[float, float]:
+        """(way m, turn rad) to reckon with. `turn_rad` is the heading source's, `is_measured` if that is a sensor."""
+        if is_measured and self.turn.trusts_gyro and abs(turn_rad) > FASTER * self._limits.turn_radps * dt_s + JITTER_RAD:
+            self._refuse_gyro(f"the gyro says {turn_rad / dt_s:.3g} rad/s, more than this robot can turn")
+        reckoned_m = way_m * self.way.grip
+        reckoned_rad, is_measured = self.turn.reckoned(dt_s, wheel_turn_rad, turn_rad, is_measured)
+        self._reckoning.add(stamp_s, dt_s, reckoned_m, reckoned_rad, (way_m, wheel_turn_rad), is_measured)
+        if self._has_gyro and self._asks_wheels and (self._alone is None or stamp_s - self._alone.stamp_s >= ALONE_S):
+            self._judge_without_laser(stamp_s)
+        return reckoned_m + self.way.debt.pay(dt_s), reckoned_rad + self.turn.debt.pay(dt_s)
+
+    def found(self) -> None:
+        """Somebody has said where the robot is."""
+        self._is_carried_off = self._is_elsewhere = False
+
+    def _refuse_gyro(self, why: str) -> None:
+        self.turn.refuse(why)
+        if not self._asks_wheels:
+            self.news.append(News(LOST, f"{why}, and nothing else tells where the robot points"))
+
+    def _judge_without_laser(self, stamp_s: float) -> None:
+        before, now = self._alone, self._reckoning.at(stamp_s)
+        self._alone = now
+        if before is not None and now is not None and stamp_s - self._matched_s > BLIND_S and stamp_s - before.stamp_s < 2.0 * ALONE_S:
+            self.turn.weigh_alone(motion_between(before, now))
+
+    # ---------------------------------------------------------------- scans
+
+    def look(self, stamp_s: float, ranges_m: Array, first_rad: float, step_rad: float, arm: Pose2) -> None:
+        """Compare a level scan with the key scan. `arm`: where the laser was, seen from the robot."""
+        if stamp_s < self._since_s:
+            return  # taken before the last finding: what was reckoned then is known to be wrong, and owed
+        at, key = self._reckoning.at(stamp_s), self._key
+        if at is None or np.count_nonzero(ranges_m > 0.0) < LEAST_BEAMS * len(ranges_m):
+            self.blind()
+            return
+        scan = KeyScan(at, ranges_m, arm)
+        if key is None or len(ranges_m) != len(key.ranges_m):
+            self._renew(scan)
+            return
+        motion = motion_between(key.at, at)
+        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
+            self._renew(scan)
+            return
+        match = self._best_match(key, scan, motion, first_rad, step_rad)
+        self.fits = match.fits
+        if match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
+            self._weigh(scan, key, motion, match)
+            self._looked_s = stamp_s
+            return
+        both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
+        is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
+        self._is_elsewhere = is_odd and not self._is_elsewhere
+        self._renew(scan)
+
+    def blind(self) -> None:
+        """A scan came that cannot be compared: the next one is compared with the one before."""
+        self._is_elsewhere = False
+
+    def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
+        """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
+        x, y, _ = motion.pose
+        best: ScanStep | None = None
+        for pose in (motion.pose, (x, y, motion.wheels_rad), IDENTITY):
+            guess = between(key.arm, compose(pose, scan.arm))
+            match = match_scans(key.ranges_m, scan.ranges_m, first_rad, step_rad, guess, self._limits.max_range_m)
+            if best is None:
+                best = match
+            elif match.fits > best.fits + 0.1:
+                best = match._replace(fits_as_guessed=best.fits_as_guessed)
+            if best.fits >= GOOD_FIT:
+                break
+        assert best is not None
+        return best
+
+    def _weigh(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
+        """A good match: does it tell of the motion that was reckoned?"""
+        stamp_s = self._matched_s = scan.at.stamp_s
+        if self._is_elsewhere:
+            self._lose("the laser sees another place than a moment ago, where neither wheels nor gyro can have brought the robot")
+            self._renew(scan)
+            return
+        seen = compose(compose(key.arm, match.step), inverse(scan.arm))
+        off_m, aside_m, off_rad = _difference(motion.pose, seen)
+        off_rad -= self._counted_rad
+        gain = match.fits - match.fits_as_guessed
+        if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
+            if self._is_confirmed(stamp_s):
+                self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
+                self._renew(scan)
+            return
+        self._last = (motion.time_s, off_m)
+        if self._judges_turns and self._is_wrong_turn(scan, off_rad, SIGMAS * match.sigma_theta_rad, motion):
+            return
+        sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
+        if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
+            return
+        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
+            self.turn.keep(stamp_s, off_rad, motion)
+            self._renew(scan)
+
+    def _is_wrong_turn(self, scan: KeyScan, off_rad: float, noise_rad: float, motion: Motion) -> bool:
+        """True if the turn is found wrong, or is suspected and the next scan has to confirm it."""
+        stamp_s = scan.at.stamp_s
+        if self.turn.is_suspect(off_rad, noise_rad, motion) and not self._is_confirmed(stamp_s):
+            return True
+        if not self.turn.weigh(stamp_s, off_rad, noise_rad, motion, self._reckoning.now_s - stamp_s):
+            return False
+        self._renew(scan)
+        self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
+        return True
+
+    def _is_carried(self, motion: Motion, off_m: float, aside_m: float) -> bool:
+        """True if the difference came at once, or sideways: then somebody moved the robot."""
+        last_s, last_m = self._last
+        most_m = FASTER * self._limits.speed_mps * (motion.time_s - last_s) + SUDDEN_M
+        return abs(off_m - last_m) > most_m or abs(aside_m) > ASIDE_M
+
+    def _is_confirmed(self, stamp_s: float) -> bool:
+        """True for the second scan in a row that says so: what walks past the laser moves on."""
+        is_second = self._suspected_s > -math.inf and self._suspected_s == self._looked_s
+        self._suspected_s = stamp_s
+        return is_second
+
+    def _lose(self, text: str) -> None:
+        self._is_elsewhere = False
+        if not self._is_carried_off:
+            self._is_carried_off = True
+            self.news.append(News(LOST, text))
+
+    def _renew(self, scan: KeyScan) -> None:
+        self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
+
+
+def _is_far(pose: Pose2, times: float) -> bool:
+    """True if so many times the way or turn lies between two scans after which another key scan is taken."""
+    return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD
+
+
+def _difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:
+    """What the laser saw more than was reckoned: m along the way, m to the left of it, rad."""
+    heading_rad = 0.5 * reckoned[2]
+    c, s = math.cos(heading_rad), math.sin(heading_rad)
+    x, y = seen[0] - reckoned[0], seen[1] - reckoned[1]
+    return c * x + s * y, c * y - s * x, math.remainder(seen[2] - reckoned[2], math.tau)

@@ -1,0 +1,60 @@
+"""`pluto why [FILE] [--at T]`: the chain of causes, the first cause first, of a recorded run or of one that goes on."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import Any
+
+from pluto_bt.commands.options import Parser
+from pluto_bt.source import Faults, PlutoError
+
+COLUMNS = ("layer", "code", "since", "text")
+
+
+def main(argv: list[str]) -> int:
+    """Print the answer."""
+    parser = Parser(prog="pluto why", description="Tell why the robot is, or is not, moving: the chain of causes, the first cause first.")
+    parser.add_argument("file", nargs="?", metavar="FILE.mcap", help="a black box; without one, the robot behind --gateway is asked")
+    parser.add_argument("--at", metavar="T", help="at this time of the run (s); default: its end, or now")
+    parser.add_argument("--gateway", metavar="HOST:PORT", default="127.0.0.1:7500")
+    parser.add_argument("--json", action="store_true", help="one JSON object")
+    args = parser.parse_args(argv)
+    from pluto_bt.commands.boxes import read_time
+
+    faults = Faults()
+    at_s = read_time(args.at, "--at", faults)
+    faults.raise_errors()
+    if args.file is None:
+        return _live(args.gateway, at_s, args.json)
+    from pluto_bt.commands.boxes import read_box
+    from pluto_bt.trees.why_box import why_at
+
+    answer = why_at(read_box(args.file), at_s)
+    _print(answer.is_moving, [cause._asdict() for cause in answer.causes], args.json)
+    return 0
+
+
+def _live(address: str, at_s: float | None, as_json: bool) -> int:
+    from pluto_bt.gateway.client import Client, GatewayError
+    from pluto_bt.gateway.listen import parse_address
+    from pluto_bt.gateway.why import ask
+
+    try:
+        with Client(*parse_address(address)) as client:
+            is_moving, causes = ask(client, at_s)
+    except PlutoError as error:
+        hint = "\n  start a robot with `pluto run MISSION.xml --realtime`, or give a black box" if not isinstance(error, GatewayError) else ""
+        print(f"pluto why: {error}{hint}", file=sys.stderr)
+        return 1 if isinstance(error, GatewayError) else 2
+    _print(is_moving, causes, as_json)
+    return 0
+
+
+def _print(is_moving: bool, causes: list[dict[str, Any]], as_json: bool) -> None:
+    if as_json:
+        print(json.dumps({"moving": is_moving, "causes": causes}, ensure_ascii=False))
+        return
+    from pluto_bt.gateway.why import lines
+
+    print("\n".join(lines(is_moving, causes)))

@@ -1,0 +1,83 @@
+"""The cross-check of gyro, wheels and laser as part of `local`: feeds it level scans, tells its findings, shows it in `Localization/Check`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from estimation.motion_check import MotionCheck
+from estimation.news import LOST, WHEELS_GRIP
+from estimation.track import Tilt
+from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
+from pluto_bt.modules.context import Context
+from pluto_bt.modules.laser_poses import Arm
+from pluto_bt.skills.reasons import NO_POSE
+
+LEVEL_RAD = math.radians(2.0)  # a scan from a wrist or a robot that leans more also sees the ground
+FINE = (1.0, 0.0, True, False, False)
+AGREED, CORRECTED, IS_LOST = 0, 1, 2  # element[0] of the topic
+SETTLING = "the heading was wrong and is being put right"
+MOST_PAN_RAD = 0.15  # from scan to scan: while the wrist moves faster its angle is not exact enough
+
+
+class MotionCheckShown:
+    """`Localization/Check` on each change: element[0] 0 the witnesses agree, 1 one is corrected, 2 lost; data = grip, drift rad/s, fit."""
+
+    def __init__(self, context: Context, check: MotionCheck) -> None:
+        self._check, self._say = check, context.say
+        self._scan = context.board.reader("sick/scan")
+        self._topic = context.board.publisher("Localization/Check", "local")
+        self._word = self._text = self._lost_text = ""
+        self._pan_rad = 0.0
+        self._ranges_m: FloatArray | None = None
+        self._shown: tuple[float, float, bool, bool, bool] | None = None
+
+    def look(self, stamp_s: float, arm: Arm, tilt: Tilt) -> None:
+        """Give the scan of that stamp to the check, if it is level."""
+        sample = self._scan()
+        if sample is None or not isinstance(sample.value, LaserScan) or sample.value.stamp_s != stamp_s:
+            return
+        scan, last, self._ranges_m = sample.value, self._ranges_m, sample.value.ranges_m
+        if last is not None and _has_equal_half(last, scan.ranges_m):
+            return  # a laser that repeats itself is no witness
+        panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
+        if max(abs(arm.tilt_rad), abs(tilt[0]), abs(tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
+            self._check.blind()
+            return
+        x, y = arm.pose_robot_laser[:2]
+        self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))
+
+    def found(self, now_s: float) -> None:
+        """Somebody has posted where the robot is."""
+        was_lost = self._check.lost
+        self._check.found()
+        if was_lost and not self._check.lost:
+            self._say("info", "found", "local", "a pose was posted: the robot is not lost any more")
+
+    def tell(self, now_s: float) -> None:
+        """Findings to the events, the state to the topic."""
+        check = self._check
+        for word, text in check.news:
+            level = "error" if word == LOST else "info" if word == WHEELS_GRIP else "warning"
+            self._say(level, word, "local", text)
+            self._word, self._text = word, text
+            self._lost_text = text if word == LOST else self._lost_text
+        check.news.clear()
+        state = (check.way.grip, check.turn.drift_radps, check.turn.trusts_gyro, check.lost, check.turn.is_settling)
+        if state == self._shown:
+            return
+        self._shown = state
+        code = IS_LOST if check.lost else AGREED if state == FINE else CORRECTED
+        word, text = (self._word, self._text) if code != AGREED else ("", "")
+        if check.lost:
+            word, text = LOST, self._lost_text or self._text
+        elif check.turn.is_settling:
+            word, text = NO_POSE, SETTLING
+        self._topic.put(FVectorState(now_s, (state[0], state[1], check.fits), (code,), word, text), now_s)
+
+
+def _has_equal_half(before: FloatArray, now: FloatArray) -> bool:
+    """True if the beams of one side are exactly those of the scan before."""
+    half = len(now) // 2
+    return len(before) == len(now) and (np.array_equal(before[:half], now[:half]) or np.array_equal(before[half:], now[half:]))

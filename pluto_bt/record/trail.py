@@ -1,0 +1,58 @@
+"""Since when things are as they are, and what was wrong a moment ago: what `why` needs besides the situation itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from pluto_bt.record.entries import Link, Situation
+
+
+@dataclass(frozen=True)
+class Trouble:
+    """What a link complained of: since when, and until when (None = still)."""
+
+    link: Link
+    since_ns: int
+    until_ns: int | None = None
+
+
+@dataclass
+class Trail:
+    """The situation with its past.
+
+    Attributes:
+        since_ns: `link/drive`, `stale/sick/scan`, `module/avoid`, `hold`, `mission`, `moves`, `ended` -> when it became as it is.
+        troubles: motion, avoidance, drive, filter -> its last complaint that was not a stop.
+    """
+
+    situation: Situation = field(default_factory=Situation)
+    since_ns: dict[str, int] = field(default_factory=dict)
+    troubles: dict[str, Trouble] = field(default_factory=dict)
+
+    def take(self, new: Situation, t_ns: int) -> None:
+        """It is `new` from `t_ns` on."""
+        old, self.situation = self.situation, new
+        if new is old or new == old:
+            return
+        for kind, before, after in (("link", old.links, new.links), ("stale", old.stale, new.stale), ("module", old.modules, new.modules)):
+            for name in {**before, **after}:
+                if (name in before) != (name in after) or (kind != "stale" and _said(before.get(name)) != _said(after.get(name))):
+                    self.since_ns[f"{kind}/{name}"] = t_ns
+        for name in ("hold", "mission", "moves", "ended"):
+            if getattr(old, name) != getattr(new, name):
+                self.since_ns[name] = t_ns
+        for name, link in new.links.items():
+            self._note(name, link, t_ns)
+
+    def _note(self, name: str, link: Link, t_ns: int) -> None:
+        last = self.troubles.get(name)
+        is_trouble = bool(link.reason) and link.reason != "stopped"
+        if last is not None and last.until_ns is None and not (is_trouble and link.reason == last.link.reason):
+            self.troubles[name] = last = Trouble(last.link, last.since_ns, t_ns)
+        if is_trouble and (last is None or last.until_ns is not None):
+            self.troubles[name] = Trouble(link, t_ns)
+
+
+def _said(value: object) -> object:
+    """What counts as a change: the words, not the figures in the text."""
+    return (value.element, value.reason) if isinstance(value, Link) else value

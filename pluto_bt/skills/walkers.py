@@ -1,0 +1,114 @@
+"""Who walks about: the stop filter's own memory of people and other moving things, seen or gone out of sight. Frame: dead reckoning.
+
+Who is in view is thought to go on about as he does. Who stops there is thought to stay. Who went out of view may be anywhere that his legs
+can have taken him to since, for `memory_s`; what the sensors have seen to be free lately is left out by `stop_path`, which asks. Nothing is
+assumed of people who were never seen to walk.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from pluto_bt.blackboard.messages import LaserScan
+from pluto_bt.skills.movers import Mask, Movers, came_closer
+from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.walker import BODY_M, IN_VIEW_S, Walker
+
+REACH_M = 6.0  # farther away, the beams are too far apart to tell
+BEFORE_S = 0.55  # a scan is compared with one so much older, so that who strolls has gone far enough to be noticed
+SCAN_S = 0.25  # a level scan counts for so much looking at most
+SAME_S = 3.0  # who was not seen for longer is not known again
+SURE = 2  # a single sighting may be a grazed edge
+MOST_WALKERS = 12
+SPREAD, IN_VIEW, COLUMNS = 4, 6, 7  # of a row
+
+
+class WalkerWatch:
+    """Takes scans and what the sonar heard moving; gives the rows."""
+
+    def __init__(self, memory_s: float) -> None:
+        self._memory_s = memory_s
+        self.forget()
+
+    def forget(self) -> None:
+        """Nobody was ever seen."""
+        self._movers = Movers()
+        self._scans: list[tuple[LaserScan, Planar]] = []
+        self._walkers: list[Walker] = []
+
+    def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
+        """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
+        before = self._before(scan)
+        self._scans.append((scan, laser))
+        if before is None:
+            return
+        ranges = scan.ranges_m
+        near: Mask = (ranges > 0.0) & (ranges < REACH_M) & (believed != 0.0)
+        bearing = laser[2] + scan.angle_min_rad + scan.angle_step_rad * np.flatnonzero(near)
+        points = np.column_stack((laser[0] + ranges[near] * np.cos(bearing), laser[1] + ranges[near] * np.sin(bearing)))
+        moved = came_closer(ranges, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
+        self._movers.velocities(points, np.flatnonzero(near), moved, scan.stamp_s)
+        self._meet(_apart([Walker(x, y, vx, vy, 0.0, scan.stamp_s, walked_s) for x, y, vx, vy, walked_s in self._movers.walkers.tolist()]))
+        self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
+
+    def take_echoes(self, places: Array, stamp_s: float) -> None:
+        """(n, 3) x m, y m and how far beside that he may be: who comes nearer, as `Approach` hears it."""
+        heard = [Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s) for x, y, unsure_m in places.tolist()]
+        seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
+        self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
+
+    def rows(self, now_s: float) -> Array:
+        """(n, COLUMNS) of all who are known about; see `Walker.row`."""
+        self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
+        sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
+        return np.array(sure) if sure else NOBODY
+
+    def bodies(self, now_s: float) -> Array:
+        """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
+        rows = self.rows(now_s)
+        seen = rows[rows[:, IN_VIEW] == 1.0]
+        return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
+
+    def _before(self, scan: LaserScan) -> tuple[LaserScan, Planar] | None:
+        """The newest scan that is old enough to compare with, if it has the same beams."""
+        while len(self._scans) > 1 and scan.stamp_s - self._scans[1][0].stamp_s >= BEFORE_S - 0.05:
+            del self._scans[0]
+        if not self._scans or scan.stamp_s - self._scans[0][0].stamp_s > 2.0 * BEFORE_S or len(self._scans[0][0].ranges_m) != len(scan.ranges_m):
+            self._scans = []
+            return None
+        return self._scans[0]
+
+    def _meet(self, seen: list[Walker]) -> None:
+        """Who of the known ones was seen again, and who is new."""
+        for one in seen:
+            known = [other for other in self._walkers if one.stamp_s - SAME_S < other.stamp_s < one.stamp_s and other.may_be(one)]
+            nearest = min(known, key=lambda other: other.gap_m(one), default=None)
+            if nearest is not None:
+                self._walkers.remove(nearest)
+                one.times = nearest.times + 1
+            self._walkers.append(one)
+        del self._walkers[:-MOST_WALKERS]
+
+    def _look_for_the_others(self, scan: LaserScan, laser: Planar, believed: Array, looked_s: float) -> None:
+        """What the scan says of those who do not walk in it."""
+        seen = [one for one in self._walkers if one.stamp_s == scan.stamp_s]
+        self._walkers = [one for one in self._walkers if not one.is_refuted(scan, laser, believed, seen)]
+        for one in self._walkers:
+            if one.stamp_s < scan.stamp_s:
+                one.looked_for_s += looked_s
+                if not one.is_in_view(scan.stamp_s) and one.is_watched(scan, laser):
+                    one.stays(scan.stamp_s)
+
+
+def _apart(seen: list[Walker]) -> list[Walker]:
+    """Those of one scan; two so near to each other are two sides of one person."""
+    kept: list[Walker] = []
+    for one in sorted(seen, key=lambda one: -math.hypot(one.vx_mps, one.vy_mps)):
+        if all(math.hypot(one.x_m - other.x_m, one.y_m - other.y_m) > 2.0 * BODY_M for other in kept):
+            kept.append(one)
+    return kept
+
+
+NOBODY: Array = np.zeros((0, COLUMNS))

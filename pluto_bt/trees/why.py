@@ -1,0 +1,255 @@
+"""Why the robot is, or is not, moving: the chain of causes from the mission down to a sensor or a person, the first cause first.
+
+Pure: it looks at a situation, its trail and the nodes at work, live or from a black box. Every cause has a layer, a code of the documented
+lists, a sentence, since when, how old what it speaks of is, and what would unblock it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Final, NamedTuple
+
+from pluto_bt.behaviours.reasons import REASONS
+from pluto_bt.blackboard.codes import LinkStatus, status_name
+from pluto_bt.record.entries import Link
+from pluto_bt.record.trail import Trail, Trouble
+from pluto_bt.skills import reasons
+from pluto_bt.skills.reasons import CHAIN_REASONS
+
+LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
+LINK_OF_MODULE: Final = {"motion": "motion", "avoid": "avoidance", "drive": "drive", "filter": "filter"}
+CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
+RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
+BASE_TOPICS: Final = ("ATRV2/Bumper", "ATRV2/Sonar", "ATRV2/Battery")
+ODOMETRY: Final = "ATRV2/Drive/Raw"
+OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
+    reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
+    reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
+    reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
+    reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
+    reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
+    "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
+    reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
+}  # fmt: skip
+OF_CODE: Final[dict[int | None, str]] = {
+    LinkStatus.LASER_FATAL: reasons.LASER_FATAL, LinkStatus.LASER_SLOW_STOP: reasons.LASER, LinkStatus.FRONT_BUMPER: reasons.BUMPER,
+    LinkStatus.BACK_BUMPER: reasons.BUMPER, LinkStatus.COMMAND_TIMEOUT: reasons.COMMAND_TIMEOUT,
+}  # fmt: skip
+
+
+class NodeAtWork(NamedTuple):
+    """A node that works or has ended its tree: `since_s` seconds of the run."""
+
+    path: str
+    kind: str
+    status: str
+    feedback: str
+    since_s: float
+
+
+class Cause(NamedTuple):
+    """One link of the chain.
+
+    `layer`: mission, node, motion, avoidance, drive, filter, sensor, module, operator or run; `age_s`: of what it is read from.
+    """
+
+    layer: str
+    code: str
+    text: str
+    since_s: float
+    age_s: float = 0.0
+    unblock: str = ""
+
+
+@dataclass
+class View:
+    """What is looked at. `ended`: state, reason and text of the mission if it is over; `paused`: the word of a pause."""
+
+    now_s: float
+    trail: Trail
+    nodes: Sequence[NodeAtWork] = ()
+    mission: str = ""
+    ended: tuple[str, str, str] = ("", "", "")
+    paused: str = ""
+
+
+@dataclass
+class Answer:
+    """The answer: is it moving, and the causes, first cause first; none if nothing hinders it."""
+
+    is_moving: bool
+    causes: list[Cause] = field(default_factory=list)
+
+    @property
+    def first(self) -> Cause | None:
+        """The first cause."""
+        return self.causes[0] if self.causes else None
+
+
+def explain(view: View) -> Answer:
+    """The chain of causes at this moment."""
+    upward = [*_links(view), *_nodes(view), *_mission(view)]
+    first = _first(view)
+    if first is not None:
+        upward = [cause for cause in upward if (cause.layer, cause.code) != (first.layer, first.code)]
+    return Answer(view.trail.situation.moves, [first, *upward] if first is not None else upward)
+
+
+# -------------------------------------------------------------------- the first cause
+
+
+def _first(view: View) -> Cause | None:
+    """Where it began: a person, a module, a leaf, or what a sensor says; in this order, because each makes the next ones complain."""
+    return _person(view) or _leaf_error(view) or _module(view) or _sensor(view) or _plain_end(view)
+
+
+def _person(view: View) -> Cause | None:
+    trail = view.trail
+    word, text = trail.situation.hold
+    if word:
+        return _cause("operator", word, text, _since(view, "hold"))
+    if view.paused:
+        return _cause("operator", reasons.OPERATOR_STOP if view.paused == "operator" else view.paused, f"the mission was paused: {view.paused}",
+                      _since(view, "mission"))  # fmt: skip
+    return None
+
+
+def _leaf_error(view: View) -> Cause | None:
+    _, reason, text = view.ended
+    ended_word, ended_text = view.trail.situation.ended
+    if reason == "leaf-error":
+        return _cause("node", reason, text, _since(view, "mission"))
+    if ended_word == "hung":
+        layer = "node" if "leaf" in ended_text.split('"', 1)[0] else "module"
+        return _cause(layer, "hung", ended_text, _since(view, "ended"))
+    return None
+
+
+def _module(view: View) -> Cause | None:
+    """A module of the chain that does not run."""
+    modules = view.trail.situation.modules
+    for name in CHAIN_MODULES:
+        if name in modules:
+            trouble = modules[name]
+            code = "hung" if trouble.startswith("hung") else "module-stopped" if trouble == "stopped" else "module-error"
+            unblock = f"`pluto module start {name}`" if code == "module-stopped" else ""
+            return _cause("module", code, f'module "{name}" is {trouble}', _since(view, f"module/{name}"), unblock=unblock)
+    return None
+
+
+def _sensor(view: View) -> Cause | None:
+    """What the lowest complaint of the chain speaks of; topics that are too old speak before all others."""
+    complaints = list(_complaints(view))
+    words = [trouble.link.reason or OF_CODE.get(_code(trouble.link), "") for _, trouble in complaints]
+    if not words:
+        return None
+    stale = view.trail.situation.stale
+    if ODOMETRY in stale and any(word in (reasons.ODOMETRY_STALE, reasons.NO_POSE, reasons.SONAR_STALE, "base-lost") for word in words):
+        return _base(view)
+    ranked = sorted(range(len(words)), key=lambda i: (_rank(words[i]), i))
+    if words[ranked[0]] not in OF_SENSOR:
+        return None
+    trouble = complaints[ranked[0]][1]
+    word = words[ranked[0]]
+    device, topic = OF_SENSOR[word]
+    text = trouble.link.text or CHAIN_REASONS.get(word) or REASONS[word].meaning
+    return _cause("sensor", word, f"{device}: {text}", trouble.since_ns / 1e9, _age(view, topic))
+
+
+def _base(view: View) -> Cause:
+    stale = view.trail.situation.stale
+    is_all = any(topic in stale for topic in BASE_TOPICS)
+    code = "base-lost" if is_all else reasons.ODOMETRY_STALE
+    text = "the base delivers nothing any more" if is_all else "odometry: the base delivers no new readings"
+    return _cause("sensor", code, text, stale[ODOMETRY], _age(view, ODOMETRY))
+
+
+def _complaints(view: View) -> Iterator[tuple[str, Trouble]]:
+    """What the links complain of, the lowest first: now, or lately where the mission has given up or waits for it; then the mission's own word."""
+    now_ns, is_over = view.now_s * 1e9, bool(view.ended[0]) or bool(view.trail.situation.ended[0])
+    for name in reversed(LINKS):
+        trouble = view.trail.troubles.get(name)
+        if trouble is None:
+            continue
+        lately_ns = now_ns - (trouble.until_ns if trouble.until_ns is not None else now_ns)
+        if trouble.until_ns is None or (lately_ns <= RECENT_S * 1e9 and (is_over or not view.trail.situation.moves)):
+            yield name, trouble
+    word = view.ended[1] or view.trail.situation.ended[0]
+    if word:
+        yield "mission", Trouble(Link((), word, view.ended[2] or view.trail.situation.ended[1]), round(_since(view, "mission") * 1e9))
+
+
+def _rank(word: str) -> int:
+    """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
+    if word in (reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN, reasons.BUMPER):
+        return 0
+    if word in (reasons.NO_POSE, reasons.LOST, "tilted", "hindered", reasons.OUTSIDE_MAP):
+        return 1
+    return 2 if word in OF_SENSOR else 3
+
+
+def _plain_end(view: View) -> Cause | None:
+    """What ended the mission or the run, where nothing below says more."""
+    state, reason, text = view.ended
+    word, words = view.trail.situation.ended
+    if word:
+        return _cause("run", word, words, _since(view, "ended"))
+    return _cause("node", reason, text or state, _since(view, "mission")) if reason else None
+
+
+# -------------------------------------------------------------------- the way up
+
+
+def _links(view: View) -> Iterator[Cause]:
+    """The links that are not as they should be, the lowest first."""
+    for name in reversed(LINKS):
+        link = view.trail.situation.links.get(name)
+        if link is None:
+            continue
+        code = _code(link)
+        if link.reason or code not in (0, None):
+            word = link.reason or status_name(0, link.element[0])
+            names = ", ".join(f"[{i}] {value} {status_name(i, value)}" for i, value in enumerate(link.element) if value)
+            text = "; ".join(part for part in (link.text, f"status {names}" if names else "") if part)
+            yield _cause(name, word, text, _since(view, f"link/{name}"))
+
+
+def _nodes(view: View) -> Iterator[Cause]:
+    """The leaves that work or wait."""
+    for node in view.nodes:
+        yield Cause("node", node.status.lower(), f"{node.path} ({node.kind}){': ' + node.feedback if node.feedback else ''}", node.since_s)
+
+
+def _mission(view: View) -> Iterator[Cause]:
+    state, reason = view.trail.situation.mission
+    if state:
+        text = f"mission {view.mission} {state}" if view.mission else f"the mission is {state}"
+        yield _cause("mission", reason or state, text, _since(view, "mission"))
+
+
+def _cause(layer: str, code: str, text: str, since_s: float, age_s: float = 0.0, unblock: str = "") -> Cause:
+    cure = REASONS[code].cure if code in REASONS else ""
+    return Cause(layer, code, text, since_s, age_s, unblock or cure or _CURES.get(code, ""))
+
+
+_CURES: Final = {
+    reasons.LASER: "clear the way, or wait until what stands there has gone",
+    reasons.SONAR: "clear the way, or wait until what stands there has gone",
+    "paused": "`pluto shell resume`",
+    "operator": "`pluto shell resume`",
+}  # fmt: skip
+
+
+def _code(link: Link) -> int | None:
+    return link.element[0] if link.element else None
+
+
+def _since(view: View, what: str) -> float:
+    return view.trail.since_ns.get(what, 0) / 1e9
+
+
+def _age(view: View, topic: str) -> float:
+    """Seconds since the last value of a topic that is too old; 0 for one that is not."""
+    stamp_s = view.trail.situation.stale.get(topic)
+    return 0.0 if stamp_s is None else view.now_s - stamp_s

@@ -1,0 +1,148 @@
+"""Who walks about: found by laser and sonar, remembered when out of view; and what stands is nobody, however the robot moves."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.maps.scene import Scene
+from pluto_bt.maps.world import Shape, World
+from pluto_bt.skills.approach import Approach
+from pluto_bt.skills.outline import Planar, outline_of
+from pluto_bt.skills.sonar import SonarRing
+from pluto_bt.skills.walkers import WalkerWatch
+from tests.chain.robots import ATRV2, PIONEER
+
+ANGLES = np.radians(np.arange(361) / 2.0 - 90.0)
+HALL = Shape("hall", "wall", np.array([(-5.0, -4.0), (5.0, -4.0), (5.0, 4.0), (-5.0, 4.0), (-5.0, -4.0)]))
+ROUND_S, SCAN_S = 0.1, 0.2
+
+
+def post(x: float, y: float, radius_m: float = 0.25) -> Shape:
+    return Shape("post", "circle", np.array([[x, y]]), radius_m)
+
+
+def scan_of(shapes: tuple[Shape, ...], laser: Planar, stamp_s: float, noise: np.random.Generator) -> LaserScan:
+    out = np.zeros(len(ANGLES))
+    Scene(World("hall", shapes=shapes)).scan(laser, 0.6, 0.0, ANGLES, 80.0, out)
+    return LaserScan(stamp_s, float(ANGLES[0]), math.radians(0.5), read_only(out + noise.normal(0.0, 0.01, len(out))), len(out))
+
+
+def watched(walk: list[tuple[float, float]], way: list[Planar], *others: Shape) -> tuple[WalkerWatch, float]:
+    """A watch after scans of somebody's walk from a robot's way, and the time then."""
+    watch, noise, now_s = WalkerWatch(30.0), np.random.default_rng(1), 0.0
+    for (x, y), laser in zip(walk, way, strict=True):
+        now_s += SCAN_S
+        watch.take_scan(scan_of((HALL, post(x, y), *others), laser, now_s, noise), laser, np.ones(len(ANGLES)))
+    return watch, now_s
+
+
+@pytest.mark.parametrize("velocity", [(-0.5, 0.0), (-1.2, 0.3), (0.0, 0.6), (0.0, -1.4), (0.7, 0.7)])
+def test_a_walker_is_found_with_his_place_and_pace(velocity: tuple[float, float]) -> None:
+    walk = [(2.5 + velocity[0] * SCAN_S * k, velocity[1] * SCAN_S * k) for k in range(7)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 7)
+    rows = watch.rows(now_s)
+    assert len(rows) == 1
+    assert rows[0, :2] == pytest.approx(walk[-1], abs=0.3)
+    assert 2.0 * rows[0, 2:4] == pytest.approx(velocity, abs=0.4), "half his velocity: he may stop as well as go on"
+    assert rows[0, 6] == 1.0
+
+
+def test_who_left_the_view_may_be_anywhere_his_legs_can_take_him_and_is_forgotten_after_a_while() -> None:
+    walk = [(1.2 - 0.2 * k, 1.5) for k in range(14)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 14)
+    near, far = watch.rows(now_s), watch.rows(now_s + 5.0)
+    assert near[0, 6] == far[0, 6] == 0.0
+    assert 4.0 < far[0, 4] - near[0, 4] < 9.0, "five seconds at about a metre a second"
+    assert len(watch.rows(now_s + 31.0)) == 0
+
+
+def test_who_stops_in_view_stays_there() -> None:
+    walk = [(4.0 - 0.2 * k, 0.0) for k in range(7)] + [(2.8, 0.0)] * 15
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 22)
+    rows = watch.rows(now_s)
+    assert len(rows) == 1 and rows[0, 4] < 2.0, "three seconds later his disc has not grown"
+
+
+def test_a_laser_that_looks_down_for_a_moment_does_not_lose_him() -> None:
+    walk = [(4.0 - 0.2 * k, 0.0) for k in range(7)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 7)
+    assert watch.rows(now_s + 2.0)[0, 6] == 1.0
+    assert watch.rows(now_s + 2.0)[0, 4] < 2.0
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.floats(-0.9, 0.9), st.floats(-0.8, 0.8), st.floats(-math.pi, math.pi), st.integers(0, 1000))
+def test_what_stands_is_nobody_however_the_robot_moves(speed_mps: float, turn_radps: float, theta: float, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    things = [post(float(x), float(y), float(r)) for x, y, r in rng.uniform((-4.5, -3.5, 0.03), (4.5, 3.5, 0.4), (5, 3)) if math.hypot(x, y) > 2.0]
+    pose, way = (0.0, 0.0, theta), []
+    for _ in range(10):
+        way.append(pose)
+        heading = pose[2] + 0.5 * turn_radps * SCAN_S
+        pose = (pose[0] + speed_mps * SCAN_S * math.cos(heading), pose[1] + speed_mps * SCAN_S * math.sin(heading), pose[2] + turn_radps * SCAN_S)
+    watch, now_s = watched([(4.7, 3.7)] * 10, way, *things)
+    assert len(watch.rows(now_s)) == 0
+
+
+def ring_of(name: str) -> SonarRing:
+    platform = {"atrv2": ATRV2, "pioneer": PIONEER}[name]
+    assert platform.devices.sonar is not None
+    return SonarRing(platform.devices.sonar, outline_of(platform.body.outline_m))
+
+
+def heard(name: str, way: list[Planar], shapes_at: list[tuple[Shape, ...]]) -> list[np.ndarray]:
+    """What `Approach` says in each round."""
+    ring, noise = ring_of(name), np.random.default_rng(2)
+    approach, said = Approach(ring), []
+    for k, (robot, shapes) in enumerate(zip(way, shapes_at, strict=True)):
+        c, s = math.cos(robot[2]), math.sin(robot[2])
+        x, y, theta = ring.axes.T
+        ranges = np.zeros(ring.count)
+        at_x, at_y = robot[0] + c * x - s * y, robot[1] + s * x + c * y
+        Scene(World("hall", shapes=shapes)).cones(at_x, at_y, theta + robot[2], 0.3, 2.0 * ring.half_cone_rad, 5.0, ranges)
+        said.append(approach.look(ranges + noise.normal(0.0, 0.02, ring.count), robot, k * ROUND_S))
+    return said
+
+
+@pytest.mark.parametrize("bearing", [0.0, math.pi / 2.0, math.pi, -math.pi / 2.0])
+def test_the_ring_hears_somebody_come_from_all_sides_while_the_robot_stands(bearing: float) -> None:
+    walk = [(2.5 - 0.1 * k) for k in range(10)]
+    said = heard("pioneer", [(0.0, 0.0, 0.0)] * 10, [(HALL, post(r * math.cos(bearing), r * math.sin(bearing))) for r in walk])
+    assert all(len(found) for found in said[5:])
+    x, y, unsure_m = said[-1][0]
+    assert math.dist((x, y), (walk[-1] * math.cos(bearing), walk[-1] * math.sin(bearing))) < 0.25 + unsure_m + 0.1
+
+
+def test_it_hears_somebody_come_from_ahead_while_the_robot_drives() -> None:
+    said = heard("atrv2", [(0.05 * k, 0.0, 0.0) for k in range(10)], [(HALL, post(3.2 - 0.1 * k, 0.0)) for k in range(10)])
+    assert any(len(found) for found in said)
+
+
+@pytest.mark.parametrize("name", ["atrv2", "pioneer"])
+@settings(max_examples=15, deadline=None)
+@given(st.floats(0.0, 0.9), st.floats(-0.8, 0.8), st.floats(-math.pi, math.pi), st.integers(0, 1000))
+def test_walls_and_posts_do_not_come_however_the_robot_moves(name: str, speed_mps: float, turn_radps: float, theta: float, seed: int) -> None:
+    """Once in a while a single transducer may be fooled by an edge; two sightings in a row make a walker, and these must be rare."""
+    rng = np.random.default_rng(seed)
+    things = tuple(post(float(x), float(y), 0.2) for x, y in rng.uniform((-4.0, -3.0), (4.0, 3.0), (4, 2)) if math.hypot(x, y) > 1.6)
+    step_m, step_rad = speed_mps * ROUND_S, turn_radps * ROUND_S
+    way = [(0.0, 0.0, theta)]
+    for _ in range(9):
+        x, y, t = way[-1]
+        way.append((x + step_m * math.cos(t + step_rad / 2), y + step_m * math.sin(t + step_rad / 2), t + step_rad))
+    said = heard(name, way, [(HALL, *things)] * 10)
+    watch = WalkerWatch(30.0)
+    for k, found in enumerate(said):
+        watch.take_echoes(found, k * ROUND_S)
+    assert len(watch.rows(1.0)) == 0
+
+
+def test_a_wall_that_the_robot_drives_at_is_not_somebody() -> None:
+    said = heard("atrv2", [(3.0 + 0.05 * k, 0.0, 0.0) for k in range(20)], [(HALL,)] * 20)
+    assert not any(len(found) for found in said)
