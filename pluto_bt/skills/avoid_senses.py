@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from pluto_bt.blackboard.messages import SonarState
+from pluto_bt.skills import reasons
 from pluto_bt.skills.limits import STILL, Twist
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.verdict import Verdict
 
 
 class AvoidSenses(NamedTuple):
