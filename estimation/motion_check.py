@@ -23,6 +23,7 @@ from estimation.way_trial import WayTrial
 Array = NDArray[np.float64]
 
 LEAST_BEAMS = 0.75  # of a scan must be numbers
+FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
 GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
 MOST_PAN_RAD = 0.3  # a laser that was panned farther sees too little of the same
@@ -148,7 +149,7 @@ class MotionCheck:
         best: ScanStep | None = None
         for pose in (motion.pose, (x, y, motion.wheels_rad), IDENTITY):
             guess = between(key.arm, compose(pose, scan.arm))
-            match = match_scans(key.ranges_m, scan.ranges_m, first_rad, step_rad, guess, self._limits.max_range_m)
+            match = match_scans(key.ranges_m, scan.ranges_m, first_rad, step_rad, guess, min(self._limits.max_range_m, FARTHEST_M))
             if best is None:
                 best = match
             elif match.fits > best.fits + 0.1:

@@ -20,12 +20,13 @@ from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
+from pluto_bt.commands.option_values import groot_address
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
-from pluto_bt.resume import Resumption, decide, journal_path
+from pluto_bt.resume import ResumeRequest, Resumption, decide
 from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, calendar_ns
 from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, load_mission
@@ -43,7 +44,7 @@ class Runner:
         self.mission = mission
         with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
         with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
-        quiet = replace(options, trace_path=None, has_gateway=False, record=None, own_clock=None, on_event=lambda event: None)
+        quiet = replace(options, trace_path=None, has_gateway=False, groot=None, record=None, own_clock=None, on_event=lambda event: None)
         rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
@@ -140,21 +141,17 @@ def make_runner(
     max_time_s: float | None = None,
     trace_path: str | Path | None = None,
     record: str | Path | None = None,
-    resume: str | None = None,
-    journal: str | Path | None = None,
-    is_placed: bool = False,
-    confirm: Callable[[str], bool] = lambda question: False,
+    resume: ResumeRequest | None = None,
     gateway: str | None = None,
+    groot: str | None = None,
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
 ) -> Runner:
     """Load the mission, which `read_inputs` has checked, then make the robot around it.
 
-    Args:
-        resume: the policy after a crash; with one, a journal is kept. `journal`: where, else `journal_path`.
-        is_placed: the start pose was given by a person, who knows where the robot stands.
-        confirm: asks a person a question.
+    With `resume` a journal is kept, and looked at first.
+
     Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
@@ -166,15 +163,14 @@ def make_runner(
         return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
 
     mission = load(inputs.mission_path, **of_file)
-    resumption = None
-    if resume is not None:
-        path = journal_path(inputs) if journal is None else Path(journal)
-        resumption = decide(resume, path, inputs, mission, inputs.start if is_placed else None, calendar_ns(), confirm)
+    resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
+    if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
         trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
-        gateway=parse_address(gateway) if gateway is not None else None, load=load, on_event=on_event, on_progress=on_progress,
+        gateway=parse_address(gateway) if gateway is not None else None,
+        groot=groot_address(groot) if groot is not None else None, load=load, on_event=on_event, on_progress=on_progress,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip
     runner = Runner(inputs, mission, clock, options)

@@ -83,6 +83,7 @@ class Play:
         max_time_s: float | None = 600.0,
         nodes: Iterable[type] = (),
         gateway: str | None = None,
+        groot: str | None = None,
         record: str | Path | None = None,
     ) -> Run:
         """Play one scenario to its end. Values of `ports` may be Python values or text as in `--port`.
@@ -97,7 +98,7 @@ class Play:
         events: list[Event] = []
         leaves = tuple(nodes)
         inputs = read_inputs(request, self._folder, leaves)
-        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway,
+        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway, "groot": groot,
                                "record": record}  # fmt: skip
         runner = make_runner(inputs, nodes=leaves, on_event=events.append, **how)
         runner.run()

@@ -57,6 +57,7 @@ MODULES: tuple[Module, ...] = (
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
+    Module("groot",     "pluto_bt.modules.groot:Groot",           0.0,    "gateway",    needs=("executive",), device="groot",               budget_ms=1.0),
     Module("recorder",  "pluto_bt.modules.recorder:Recorder",     0.5,    "recorder",   needs=("executive",), device="recorder",            budget_ms=20.0),
 )
 # fmt: on
@@ -87,6 +88,7 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
+    groot: Address | None = None
     record: RecordRequest | None = None
     own_clock: StepClock | None = None
     load: Callable[..., Mission] = load_mission
@@ -112,7 +114,7 @@ class System:
         self.latch = SafetyLatch()
         self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        asked = {"gateway": options.has_gateway, "recorder": options.record is not None, "arm": options.robot.devices.arm is not None}
+        asked = {"gateway": options.has_gateway, "recorder": options.record is not None, "groot": options.groot is not None, "arm": options.robot.devices.arm is not None}
         has = {*self.simulator.devices, *(name for name, is_asked in asked.items() if is_asked)}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()

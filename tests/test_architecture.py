@@ -25,6 +25,7 @@ MAY = {
     "pluto_bt.behaviours": ("pluto_bt.source", "pluto_bt.maps", "pluto_bt.blackboard", "pluto_bt.runtime", "pluto_bt.skills", "estimation"),
     "pluto_bt.trees": ("pluto_bt.source", "pluto_bt.maps", "pluto_bt.blackboard", "pluto_bt.runtime", "pluto_bt.record", "pluto_bt.skills",
                        "pluto_bt.behaviours", "estimation"),
+    "pluto_bt.groot": ("pluto_bt.source", "pluto_bt.behaviours", "pluto_bt.trees"),
 }  # fmt: skip
 TOP_FLOOR = ("pluto_bt.modules", "pluto_bt.commands", "pluto_bt.bench", "pluto_bt.platforms")  # and every file directly in pluto_bt/
 

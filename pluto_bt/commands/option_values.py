@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 from pluto_bt.source import Faults, InputError, Place
+from pluto_bt.source.faults import fail
+
+if TYPE_CHECKING:
+    from pluto_bt.gateway.listen import Address
 
 Pose = tuple[float, float, float]
 MAX_METRES = 1e6  # as in world files
@@ -71,6 +77,37 @@ def check_gateway(address: str | None, faults: Faults) -> None:
 
     try:
         open_listener(parse_address(address)).close()
+    except InputError as error:
+        faults.extend(error.faults)
+
+
+def groot_address(text: str) -> Address:
+    """`--groot [HOST:]PORT`, on the loopback: 127.0.0.1 without a host, 1667 without a port. Raises: InputError."""
+    from pluto_bt.gateway.listen import Address, parse_address
+
+    place = Place("--groot")
+    text = text if ":" in text or text.isdigit() else f"{text}:1667"
+    try:
+        address = parse_address(text)
+    except InputError:
+        fail(place, "bad-address", f'bad address "{text}"', expected="[HOST:]PORT with a port of 0 to 65534", found=text)
+    if address.host not in ("127.0.0.1", "localhost"):
+        mend = f"listen on 127.0.0.1:{address.port} and reach it through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
+        fail(place, "not-loopback", f"the monitor does not listen on {address.host}", expected="127.0.0.1 or localhost", found=text, mend=mend)
+    if address.port == 65535:
+        fail(place, "bad-address", "the monitor needs the port after this one too", expected="a port of 0 to 65534", found=text)
+    return Address("127.0.0.1", address.port)
+
+
+def check_groot(text: str | None, faults: Faults) -> None:
+    """The address of the monitor, and whether its library is there."""
+    if text is None:
+        return
+    if find_spec("zmq") is None:
+        what, mend = "the library pyzmq is not installed", "pip install 'pluto_bt[groot]'"
+        faults.error(Place("--groot"), "not-installed", what, expected="pyzmq", mend=mend)
+    try:
+        groot_address(text)
     except InputError as error:
         faults.extend(error.faults)
 

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pluto_bt.commands.options import Parser
 from pluto_bt.result import RunResult
 from pluto_bt.source import Faults, InputError
+
+if TYPE_CHECKING:
+    from pluto_bt.resume import ResumeRequest
 
 
 def main(argv: list[str]) -> int:
@@ -38,6 +43,7 @@ def _parser() -> Parser:
     parser.add_argument("--resume", choices=("hold", "ask", "resume"), help="keep a journal; after a crash stay still, ask, or go on where it was")
     parser.add_argument("--journal", metavar="FILE", help="with --resume: where the journal lies (default: one for each mission in the state folder)")
     parser.add_argument("--gateway", metavar="HOST:PORT", help="serve the TCP/XML gateway (default with --realtime: 127.0.0.1:7500)")
+    parser.add_argument("--groot", metavar="[HOST:]PORT", help="serve Groot2's live monitor, read-only (Groot2's own port is 1667)")
     parser.add_argument("--json", action="store_true", help="end with one JSON object on the last line")
     return parser
 
@@ -50,16 +56,25 @@ def _confirm(question: str) -> bool:
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
+def _resume(args: argparse.Namespace) -> ResumeRequest | None:
+    from pluto_bt.resume import ResumeRequest
+
+    if args.resume is None:
+        return None
+    return ResumeRequest(args.resume, None if args.journal is None else Path(args.journal), args.start is not None, _confirm)
+
+
 def _run(args: argparse.Namespace) -> RunResult:
     from pluto_bt.commands.files import refuse_shadowed_packages
     from pluto_bt.commands.inputs import Request, read_inputs
-    from pluto_bt.commands.option_values import check_gateway, read_positive
+    from pluto_bt.commands.option_values import check_gateway, check_groot, read_positive
     from pluto_bt.commands.outputs import check_outputs
 
     refuse_shadowed_packages()
     faults = Faults()
     check_outputs(args, faults)
     check_gateway(args.gateway, faults)
+    check_groot(args.groot, faults)
     speed, max_time_s = read_positive(args.speed, "--speed", faults), read_positive(args.max_time, "--max-time", faults)
     inputs = read_inputs(Request.of(args), faults=faults)
     for warning in inputs.warnings:
@@ -69,9 +84,8 @@ def _run(args: argparse.Namespace) -> RunResult:
 
     progress = make_progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
-        inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record, resume=args.resume,
-        journal=args.journal, is_placed=args.start is not None, confirm=_confirm, gateway=args.gateway, on_event=progress.event,
-        on_progress=progress.show,
+        inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
+        resume=_resume(args), gateway=args.gateway, groot=args.groot, on_event=progress.event, on_progress=progress.show,
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

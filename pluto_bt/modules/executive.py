@@ -35,6 +35,7 @@ class Executive:
         self._pose = board.reader("Localization/Pose")
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
+        self.on_ticked: Callable[[list[Activity], list[str]], None] | None = None  # a monitor that looks on
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
         self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
@@ -66,10 +67,11 @@ class Executive:
         lines = [activity.mission.status_line() for activity in ticked]
         if ticked:
             self._show_trees(ticked, lines, now_s)
-        if ticked:
+            if self.on_ticked is not None:
+                self.on_ticked(ticked, lines)
             self._guardian.look(ticked, now_s)
         if self.keeper is not None:
-            self._keep(self.keeper, ticked, now_s)
+            self._keep(self.keeper, ticked, lines, now_s)
         if self._log is not None:
             self._log.step(now_s, ticked, lines)
         else:
@@ -87,16 +89,19 @@ class Executive:
             self._events.put(event, now_s)
             self.on_event(event)
 
-    def _keep(self, keeper: JournalKeeper, ticked: list[Activity], now_s: float) -> None:
-        """The journal of the mission, before anybody else acts on what it decided."""
-        mission = self.core.mission
-        if mission is None or mission not in ticked:
-            keeper.look(now_s)
+    def _keep(self, keeper: JournalKeeper, ticked: list[Activity], lines: list[str], now_s: float) -> None:
+        """The journal of the mission; it ends with the mission, or when another one takes its place."""
+        activity = self.core.mission
+        if activity is None:
             return
-        keeper.after_tick(now_s, mission.ticks)
-        if mission.is_over:
+        is_its = activity.mission is keeper.mission
+        if is_its and activity in ticked:
+            keeper.after_tick(now_s, activity.ticks, lines[ticked.index(activity)])
+        if not is_its or activity.is_over:
             keeper.end()
             self.keeper = None
+        else:
+            keeper.look(now_s)
 
     @property
     def contracts(self) -> list[Kept]:
