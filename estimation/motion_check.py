@@ -26,6 +26,7 @@ LEAST_BEAMS = 0.75  # of a scan must be numbers
 FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
 GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
+MOST_PAN_RAD = 0.3  # a laser that was panned farther sees too little of the same
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
@@ -119,7 +120,8 @@ class MotionCheck:
             self.blind()
             return
         scan = KeyScan(at, ranges_m, arm)
-        if key is None or len(ranges_m) != len(key.ranges_m):
+        if key is None or len(ranges_m) != len(key.ranges_m) or abs(math.remainder(arm[2] - key.arm[2], math.tau)) > MOST_PAN_RAD:
+            self._is_elsewhere = False
             self._renew(scan)
             return
         motion = motion_between(key.at, at)
