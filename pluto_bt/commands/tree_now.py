@@ -21,10 +21,17 @@ def of_system(system: System) -> Drawn | None:
     sample = system.board.newest("tree")
     if sample is None or not isinstance(sample.value, TreeState):
         return None
-    core = system.executive.core
+    core, now_s = system.executive.core, system.clock.now_s()
     at_work = [activity.mission for activity in (core.active, core.job) if activity is not None]
-    words = {one.path: one.node.feedback_message for mission in at_work for one in mission.nodes()}
-    return _joined((state.depth, _of_state(state, words.get(state.path, state.feedback), system.clock.now_s())) for state in sample.value.nodes)
+    known = {one.path: one for mission in at_work for one in mission.nodes()}
+    flat = []
+    for state in sample.value.nodes:
+        tracked = known.get(state.path)
+        if tracked is None:  # the topic still tells of a tree that has gone
+            return None
+        kind = tracked.plan.node_type.kind if tracked.plan.node_type is not None else "SubTree"
+        flat.append((state.depth, _of_state(state, kind, tracked.node.feedback_message, now_s)))
+    return _joined(flat)
 
 
 def of_gateway(address: str) -> Drawn | None:
@@ -41,7 +48,8 @@ def of_gateway(address: str) -> Drawn | None:
             raise
     now_s = float(value.get("stamp", "0")) + float(value.get("age", "0"))
     states = [msgspec.convert(one.attrib, NodeState, strict=False) for one in value.iter("node")]
-    return _joined((state.depth, _of_state(state, state.feedback, now_s)) for state in states)
+    kinds = {node_type.name: node_type.kind for node_type in node_types().values()} | {"SubTree": "SubTree"}
+    return _joined((state.depth, _of_state(state, kinds.get(state.kind, "Action"), state.feedback, now_s)) for state in states)
 
 
 def of_box(box: Box, number: int) -> Drawn | None:
@@ -59,13 +67,8 @@ def last_at_work(box: Box) -> int:
     return len(box) - 1
 
 
-def _of_state(state: NodeState, feedback: str, now_s: float) -> Drawn:
-    return Drawn(_sort_of(state.kind), state.kind, state.name, [], [], state.status, feedback, now_s - state.since_s)
-
-
-def _sort_of(kind: str) -> str:
-    known = node_types().get(kind)
-    return known.kind if known is not None else "SubTree" if kind == "SubTree" else "Action"
+def _of_state(state: NodeState, kind: str, feedback: str, now_s: float) -> Drawn:
+    return Drawn(kind, state.kind, state.name, [], [], state.status, feedback, now_s - state.since_s)
 
 
 def _of_rows(tree: TreeNow, now: Now) -> Iterable[tuple[int, Drawn]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import threading
 from collections import deque
 from collections.abc import Iterator
@@ -30,7 +31,8 @@ class LiveTree(Progress):
     def __init__(self, stream: IO[str]) -> None:
         super().__init__(stream)
         self._console = Console(file=stream, highlight=False, markup=False, emoji=False)
-        self._live = Live(console=self._console, auto_refresh=False, transient=True, vertical_overflow="crop")
+        self._live = Live(console=self._console, auto_refresh=False, transient=True, vertical_overflow="crop",
+                          redirect_stdout=stream is sys.stdout, redirect_stderr=False)  # fmt: skip
 
     def line(self, text: str) -> None:
         """One whole line, above the tree."""

@@ -28,9 +28,13 @@ class Server:
         self._is_over = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="groot", daemon=True)
         self.host, self.port = host, self._bind(host, port)
+        if not self.port:
+            self._context.destroy(linger=0)
+            fail(Place(file="--groot"), "port-in-use", f"the monitor cannot listen on {host}:{port} and {port + 1}",
+                 expected="two free neighbouring ports", mend="give another port, or stop the program that has these")  # fmt: skip
 
     def _bind(self, host: str, port: int) -> int:
-        reason = ""
+        """Both sockets; the port, 0 if it cannot be had."""
         for _ in range(1 if port else TRIES):
             self._replies, self._publisher = self._context.socket(zmq.REP), self._context.socket(zmq.PUB)
             self._replies.setsockopt(zmq.MAXMSGSIZE, LARGEST_REQUEST)
@@ -40,15 +44,12 @@ class Server:
                 if port:
                     self._replies.bind(f"tcp://{host}:{port}")
                 self._publisher.bind(f"tcp://{host}:{taken + 1}")
-            except (zmq.ZMQError, zmq.ZMQBindError) as error:
-                reason = str(error)
+            except (zmq.ZMQError, zmq.ZMQBindError):
                 self._replies.close(0)
                 self._publisher.close(0)
             else:
                 return taken
-        self._context.destroy(linger=0)
-        fail(Place(file="--groot"), "port-in-use", f"the monitor cannot listen on {host}:{port} and {port + 1}: {reason}",
-             expected="two free neighbouring ports", mend="give another port, or stop the program that has these")  # fmt: skip
+        return 0
 
     def start(self) -> None:
         """Serve from now on."""

@@ -35,7 +35,7 @@ class Executive:
         self._pose = board.reader("Localization/Pose")
         self._waiting: deque[Event] = deque()
         self.on_event: Callable[[Event], None] = lambda event: None
-        self.on_ticked: Callable[[list[Activity]], None] | None = None  # a monitor that looks on
+        self.on_ticked: Callable[[list[Activity], list[str]], None] | None = None  # a monitor that looks on
         self.core = Core(context.system.robot, lambda level, code, text: self.say(level, code, "mission", text))
         self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
@@ -68,7 +68,7 @@ class Executive:
         if ticked:
             self._show_trees(ticked, lines, now_s)
             if self.on_ticked is not None:
-                self.on_ticked(ticked)
+                self.on_ticked(ticked, lines)
             self._guardian.look(ticked, now_s)
         if self.keeper is not None:
             self._keep(self.keeper, ticked, lines, now_s)

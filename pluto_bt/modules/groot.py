@@ -23,15 +23,15 @@ class Groot:
         assert asked is not None, "made only if it was asked for"
         self._context = context
         self._desk = Desk(context.clock.now_ns, lambda: calendar_ns() // 1000)
-        self._server = Server(self._desk, asked.host, asked.port)
-
-    @property
-    def address(self) -> Address:
-        """Where it listens."""
-        return Address(self._server.host, self._server.port)
+        self._seen: tuple[int, str] | None = None
+        self._server: Server | None = Server(self._desk, asked.host, asked.port)
+        self.address = Address(self._server.host, self._server.port)
 
     def start(self, now_s: float) -> None:
-        """Serve, and look at each tick."""
+        """Serve, and look at each tick. Raises: InputError if somebody took the ports while the module was stopped."""
+        if self._server is None:
+            self._server = Server(self._desk, self.address.host, self.address.port)
+        self._seen = None
         self._context.system.executive.on_ticked = self._look
         self._server.start()
         self._context.say("info", "groot", "groot", f"Groot2 can connect to {self.address}")
@@ -42,13 +42,17 @@ class Groot:
     def stop(self) -> None:
         """Free the ports."""
         self._context.system.executive.on_ticked = None
-        self._server.stop()
+        if self._server is not None:
+            self._server.stop()
+        self._server = None
 
-    def _look(self, ticked: list[Activity]) -> None:
-        """After a tick, in the thread that ticks: a copy of the statuses, and nothing that may wait."""
+    def _look(self, ticked: list[Activity], lines: list[str]) -> None:
+        """After a tick, in the thread that ticks: a copy of the statuses if one has changed, and nothing that may wait."""
         mission = self._context.system.executive.core.mission
-        if mission is None or mission not in ticked:
+        line = next((line for activity, line in zip(ticked, lines, strict=True) if activity is mission), None)
+        if mission is None or line is None or (mission.number, line) == self._seen:
             return
+        self._seen = mission.number, line
         shown = self._desk.shown
         if shown is None or shown.mission is not mission.mission:
             shown = Shown(mission.mission, tree_id(mission))

@@ -1,4 +1,4 @@
-"""What avoidance knows at a step."""
+"""What avoidance is told at each step."""
 
 from __future__ import annotations
 

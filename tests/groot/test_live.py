@@ -5,14 +5,18 @@ from __future__ import annotations
 import socket
 import threading
 from collections.abc import Iterator
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 import zmq
 
 from pluto_bt.cli import main
+from pluto_bt.gateway.listen import Address
 from pluto_bt.groot.protocol import Desk
 from pluto_bt.groot.server import Server
+from pluto_bt.modules.groot import Groot
+from pluto_bt.runtime import VirtualClock
 from pluto_bt.scenario import Play
 from pluto_bt.source import InputError
 from tests.groot.client import GrootClient
@@ -97,6 +101,19 @@ def test_a_monitor_changes_nothing_of_a_run(scenario: Play, play: Any) -> None:
     assert alone.trace_sha256 == done[0].trace_sha256
 
 
+def test_the_module_can_be_stopped_and_started_again() -> None:
+    clock, executive = VirtualClock(), SimpleNamespace(on_ticked=None)
+    system = SimpleNamespace(options=SimpleNamespace(groot=Address("127.0.0.1", 0)), executive=executive)
+    module = Groot(cast(Any, SimpleNamespace(system=system, clock=clock, say=lambda *words: None)))
+    for _ in range(2):
+        module.start(0.0)
+        assert executive.on_ticked is not None
+        with GrootClient(module.address.port) as client:
+            assert client.ask(b"T").error == "there is no tree yet"
+        module.stop()
+        assert executive.on_ticked is None
+
+
 def test_two_monitors_cannot_have_one_port() -> None:
     desk = Desk(lambda: 0, lambda: 0)
     server = Server(desk, "127.0.0.1", 0)
@@ -111,7 +128,8 @@ def test_two_monitors_cannot_have_one_port() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "told"), [("0.0.0.0:1667", "does not listen on 0.0.0.0"), ("65535", "needs the port after"), ("127.0.0.1:x", "bad address"), (":99999", "bad address")]
+    ("text", "told"),
+    [("0.0.0.0:1667", "does not listen on 0.0.0.0"), ("65535", "needs the port after"), ("127.0.0.1:x", "bad address"), (":99999", "bad address")],
 )  # fmt: skip
 def test_a_bad_address_is_refused_before_anything_moves(text: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "t01_say_hello.xml", "--groot", text]) == 2
