@@ -53,7 +53,7 @@ class MotionCheck:
     """Corrects each step of dead reckoning by what the witnesses have found out.
 
     Attributes:
-        turn, way: the trials of gyro and wheels. lost: the robot is elsewhere. fits: share of the last scan that was explained.
+        turn, way: the trials of gyro and wheels. fits: share of the last scan that was explained.
         news: findings that nobody has told yet.
     """
 
@@ -62,7 +62,7 @@ class MotionCheck:
         self._limits, self._asks_wheels, self._has_gyro, self._judges_turns = limits, wheels_know_turns, has_gyro, judges_turns
         self.news: list[News] = []
         self.turn, self.way = TurnTrial(self.news, wheels_know_turns), WayTrial(self.news)
-        self.lost = False
+        self._is_carried_off = False
         self.fits = 1.0
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
@@ -72,6 +72,11 @@ class MotionCheck:
         self._matched_s = self._since_s = -math.inf
         self._alone: Sums | None = None  # since then the gyro is watched by the wheels
         self._looked_s = self._suspected_s = -math.inf  # stamps of the last scan, and of the last that told of a wrong way
+
+    @property
+    def lost(self) -> bool:
+        """True while nobody knows where the robot is, or where a car without gyro points: its wheels know of no turn."""
+        return self._is_carried_off or not (self.turn.trusts_gyro or self._asks_wheels)
 
     # ---------------------------------------------------------------- steps
 
@@ -88,12 +93,12 @@ class MotionCheck:
 
     def found(self) -> None:
         """Somebody has said where the robot is."""
-        self.lost = self._is_elsewhere = False
+        self._is_carried_off = self._is_elsewhere = False
 
     def _refuse_gyro(self, why: str) -> None:
         self.turn.refuse(why)
-        if not self._asks_wheels:  # the wheels of a car know of no turn
-            self._lose(f"{why}, and nothing else tells where the robot points")
+        if not self._asks_wheels:
+            self.news.append(News(LOST, f"{why}, and nothing else tells where the robot points"))
 
     def _judge_without_laser(self, stamp_s: float) -> None:
         before, now = self._alone, self._reckoning.at(stamp_s)
@@ -201,8 +206,8 @@ class MotionCheck:
 
     def _lose(self, text: str) -> None:
         self._is_elsewhere = False
-        if not self.lost:
-            self.lost = True
+        if not self._is_carried_off:
+            self._is_carried_off = True
             self.news.append(News(LOST, text))
 
     def _renew(self, scan: KeyScan) -> None:

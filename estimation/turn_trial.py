@@ -20,6 +20,7 @@ LEAST_OF_LIAR_RAD = 0.025  # the same for a gyro that is known to drift
 WHEELS_SHARE, WHEELS_RAD = 0.2, 0.02  # wheels and gyro agree about a turn: skidding, and counts
 ALONE_RADPS, STRAIGHT_RADPS = 0.15, 0.03  # without laser: a turn of the gyro, and of wheels that run straight
 STRIKES, STRIKES_S, JUMP_RADPS = 3, 15.0, math.radians(2.5)  # so many jumps of so much within such a time: this is no bias
+AGAIN_S, MUCH_RADPS = 6.0, math.radians(10.0)  # put right from outside: so soon again it is a drift; so much is a strike
 SMALL_RADPS = 0.005  # what is left of a drift after the bias was measured anew
 MAKE_UP_RADPS, SETTLING_RAD = 1.0, 0.3
 
@@ -33,6 +34,7 @@ class TurnTrial:
         self.drift_radps, self.trusts_gyro = 0.0, True
         self.debt = Debt(MAKE_UP_RADPS)
         self.lag_rad = 0.0
+        self._put_right_s = -math.inf
         self._news, self._asks_wheels = news, asks_wheels
         self._pieces: deque[tuple[float, float, Motion]] = deque()  # stamp s, laser's turn − reckoned turn, motion: the last comparisons
         self._strikes: deque[float] = deque(maxlen=STRIKES)
@@ -85,6 +87,16 @@ class TurnTrial:
         if is_straight and motion.measured_s > 0.9 * motion.time_s and abs(motion.turn_rad) > ALONE_RADPS * motion.time_s:
             self._accuse(motion.wheels_rad - motion.turn_rad, motion, 0.0, "no laser is there to ask")
 
+    def put_right(self, stamp_s: float, off_rad: float) -> None:
+        """Somebody who sees where the robot points has moved the heading by so much. A second time soon after, and it drifts."""
+        since_s, self._put_right_s = stamp_s - self._put_right_s, stamp_s
+        if since_s >= AGAIN_S or not self.trusts_gyro:
+            return
+        self.drift_radps -= off_rad / since_s
+        dps = math.degrees(-off_rad / since_s)
+        told = f"the heading had to be put right by {math.degrees(off_rad):+.0f} deg within {since_s:.1f} s: the gyro drifts by {dps:+.1f} deg/s"
+        self._tell_drift(told, stamp_s if abs(off_rad) > MUCH_RADPS * since_s else None)
+
     def bias_moved(self, by_radps: float) -> None:
         """The gyro's own bias was measured anew, higher by so much: what was taken off here for it is not needed any more."""
         left_radps = self.drift_radps - by_radps
@@ -116,10 +128,14 @@ class TurnTrial:
         if not is_drift:
             return
         self.drift_radps += by_radps
-        if abs(by_radps) > JUMP_RADPS:
-            self._strikes.append(motion.until_s)
         told = f"the gyro turns by {math.degrees(by_radps):+.1f} deg/s more than the robot: "
         told += f"the wheels say {motion.wheels_rad:.2f} rad, it says {motion.turn_rad:.2f}; {others}"
+        self._tell_drift(told, motion.until_s if abs(by_radps) > JUMP_RADPS else None)
+
+    def _tell_drift(self, told: str, strike_s: float | None) -> None:
+        """A drift was found; `strike_s`: it was a jump, at this time."""
+        if strike_s is not None:
+            self._strikes.append(strike_s)
         if len(self._strikes) == STRIKES and self._strikes[-1] - self._strikes[0] < STRIKES_S:
             self.refuse(f"{told}. Again and again")
         else:

@@ -7,8 +7,8 @@ recording, and what the trees command goes nowhere.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from importlib import resources
 from itertools import islice
 from pathlib import Path
@@ -26,32 +26,15 @@ from pluto_bt.modules.robot_link import RobotLink
 from pluto_bt.modules.tick_log import BranchLog
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.record.box import Box, open_box
-from pluto_bt.record.codec import encode
-from pluto_bt.record.entries import STATUS_OF_LETTER, Branch, NodeRow, Posted, Tick
+from pluto_bt.record.differences import Difference, compared
+from pluto_bt.record.entries import Posted, Tick
+from pluto_bt.record.feed import Feed, PlaybackError
 from pluto_bt.record.story import ended
 from pluto_bt.runtime.clock import StepClock, VirtualClock
 from pluto_bt.skills.jobs import Job
 from pluto_bt.source import Faults, PlutoError
 from pluto_bt.trees import Mission, load_mission, memory
 from pluto_bt.trees.executive import Activity, Executive
-
-
-class PlaybackError(PlutoError):
-    """A recording that cannot be played: something of it is missing."""
-
-
-@dataclass(frozen=True)
-class Difference:
-    """Where a run and its repetition part: the tick, what is meant, what was recorded and what came now."""
-
-    step: int
-    t_s: float
-    what: str
-    recorded: str
-    now: str
-
-    def __str__(self) -> str:
-        return f"tick {self.step} ({self.t_s:.2f} s): {self.what}: recorded {self.recorded}, now {self.now}"
 
 
 class _Inbox(Inbox):
@@ -100,7 +83,7 @@ class Playback:
         self._logs: dict[int, BranchLog] = {}
         self._posted: list[Posted] = []
         self._expected: tuple[Posted, ...] = ()
-        self._feed = _Feed(box, self._board)
+        self._feed = Feed(box, self._board)
         self._started = 0
 
     def run(self) -> Iterator[Difference]:
@@ -133,7 +116,8 @@ class Playback:
         ticked = self._core.step(now_s)
         self._jobs.tell(now_s)
         self._core.take_done()
-        yield from self._compare(tick, [self._logs[activity.number].branch(activity.mission.status_line()) for activity in ticked])
+        now = [self._logs[activity.number].branch(activity.mission.status_line()) for activity in ticked]
+        yield from compared(tick, self._box.trees, now, self._posted)
 
     def _began(self, activity: Activity) -> None:
         self._logs[activity.number] = BranchLog(activity)
@@ -190,75 +174,9 @@ class Playback:
     def _load(self, text: str | Path, **more: Any) -> Mission:
         return load_mission(text, self._nodes, self._clock, topics=self._topics, **more)
 
-    # ---------------------------------------------------------------- comparing
-
     def _note(self, to: str, ticket: Ticket) -> None:
         command = ticket.command
         self._posted.append(Posted(to, command.flags, command.position, command.velocity, ticket.refused))
-
-    def _compare(self, tick: Tick, now: list[Branch]) -> Iterator[Difference]:
-        def differs(what: str, recorded: object, here: object) -> Difference:
-            return Difference(tick.step, tick.t_s, what, str(recorded), str(here))
-
-        if len(now) != len(tick.trees):
-            yield differs("trees at work", len(tick.trees), len(now))
-            return
-        for recorded, here in zip(tick.trees, now, strict=True):
-            rows = self._box.trees[recorded.run].nodes
-            if len(recorded.nodes) != len(here.nodes):
-                yield differs("number of nodes", len(recorded.nodes), len(here.nodes))
-                return
-            if recorded.nodes != here.nodes:
-                i = next(i for i, (a, b) in enumerate(zip(recorded.nodes, here.nodes, strict=True)) if a != b)
-                yield differs(f"status of {rows[i].path}", STATUS_OF_LETTER[recorded.nodes[i]], STATUS_OF_LETTER[here.nodes[i]])
-            if recorded.finished != here.finished:
-                yield differs("leaves that ended", _ends(rows, recorded), _ends(rows, here))
-            yield from _entries(differs, "feedback of ", {rows[i].path: text for i, text in recorded.feedback.items()},
-                                {rows[i].path: text for i, text in here.feedback.items()})  # fmt: skip
-            yield from _entries(differs, "entry ", recorded.board, msgspec.json.decode(encode(here.board)))
-            if (recorded.state, recorded.reason) != (here.state, here.reason):
-                yield differs("the end", f"{recorded.state} {recorded.reason}", f"{here.state} {here.reason}")
-        if tick.commands != tuple(self._posted):
-            yield differs("commands", list(tick.commands), self._posted)
-
-
-def _ends(rows: Sequence[NodeRow], branch: Branch) -> str:
-    return ", ".join(f"{rows[i].path} {letter}" for i, letter in branch.finished) or "none"
-
-
-def _entries(differs: Any, what: str, recorded: Mapping[str, Any], here: Mapping[str, Any]) -> Iterator[Difference]:
-    for key in {**recorded, **here}:
-        if recorded.get(key) != here.get(key):
-            yield differs(f"{what}{key}", recorded.get(key, "nothing new"), here.get(key, "nothing new"))
-
-
-class _Feed:
-    """Fills a blackboard with the recorded samples, as far as a tick saw them."""
-
-    def __init__(self, box: Box, board: Blackboard) -> None:
-        names: dict[str, None] = {}
-        for number in range(len(box)):
-            names.update(dict.fromkeys(box.tick(number).seqs))
-        self._samples = box.samples(names)
-        self._next = dict.fromkeys(names, 0)
-        self._board = board
-        self.is_at_its_end = False
-
-    def up_to(self, tick: Tick) -> bool:
-        """Write what came before this tick. False if the recording was cut short before. Raises: PlaybackError if a sample was dropped."""
-        for name, seq in tick.seqs.items():
-            samples, at = self._samples[name], self._next[name]
-            while at < len(samples) and samples[at].seq <= seq:
-                self._board.put_back(name, samples[at])
-                at += 1
-            self._next[name] = at
-            if seq and at == len(samples) and (at == 0 or samples[-1].seq < seq):
-                self.is_at_its_end = True
-                return False
-            if seq and samples[at - 1].seq != seq:
-                raise PlaybackError(f"tick {tick.step} ({tick.t_s:.2f} s) saw a sample of {name} that the file does not hold (any more)")
-        return True
-
 
 def _inputs(box: Box, files: Path, mission: Path, nodes: Sequence[type]) -> Inputs:
     """What the run was made of, read from the unpacked files."""

@@ -22,6 +22,23 @@ HELD = "held"
 POLICIES = ("hold", "ask", "resume")
 
 
+@dataclass(frozen=True)
+class ResumeRequest:
+    """What a person asked for.
+
+    Attributes:
+        policy: hold, ask or resume.
+        journal: where the journal lies; None = `journal_path`.
+        is_placed: he gave the start pose, and so says where the robot stands; else it stands where it was left.
+        confirm: asks a person a question; used by the policy `ask` alone.
+    """
+
+    policy: str
+    journal: Path | None = None
+    is_placed: bool = False
+    confirm: Callable[[str], bool] = lambda question: False
+
+
 @dataclass
 class Resumption:
     """What was decided.
@@ -61,17 +78,12 @@ def _hash(files: Sequence[str], words: str) -> str:
     return digest.hexdigest()
 
 
-def decide(
-    policy: str, path: Path, inputs: Inputs, mission: Mission, start: Pose | None, now_ns: int, confirm: Callable[[str], bool]
-) -> Resumption:
-    """Look at the journal, and let the mission remember what it tells.
+def decide(request: ResumeRequest, inputs: Inputs, mission: Mission, now_ns: int) -> Resumption:
+    """Look at the journal, and let the mission remember what it tells; `now_ns` of the calendar.
 
-    Args:
-        start: where the robot is said to stand now (`--start`); None = where it was left.
-        now_ns: of the calendar.
-        confirm: asks a person; used by the policy `ask` alone.
     Raises: OSError if a file of the run cannot be read.
     """
+    path, start = request.journal or journal_path(inputs), inputs.start if request.is_placed else None
     hashes = hashes_of(inputs, mission)
     past = read_journal(path)
     if past is None or not past.has_begun:
@@ -84,7 +96,7 @@ def decide(
     told = f"a run of this mission was cut off {age_s:.0f} s ago, after {past.tick} ticks"
     if doubts:
         held = f"{told}; going on is in doubt: {'; '.join(doubts)}"
-    elif policy == "resume" or (policy == "ask" and confirm(f"{told}. Go on where it was?")):
+    elif request.policy == "resume" or (request.policy == "ask" and request.confirm(f"{told}. Go on where it was?")):
         held = ""
     else:
         held = f"{told}; it waits for an operator: `pluto shell resume`, or --resume resume"

@@ -26,7 +26,7 @@ from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
-from pluto_bt.resume import Resumption, decide, journal_path
+from pluto_bt.resume import ResumeRequest, Resumption, decide
 from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, calendar_ns
 from pluto_bt.system import Options, System
 from pluto_bt.trees import Mission, load_mission
@@ -141,10 +141,7 @@ def make_runner(
     max_time_s: float | None = None,
     trace_path: str | Path | None = None,
     record: str | Path | None = None,
-    resume: str | None = None,
-    journal: str | Path | None = None,
-    is_placed: bool = False,
-    confirm: Callable[[str], bool] = lambda question: False,
+    resume: ResumeRequest | None = None,
     gateway: str | None = None,
     groot: str | None = None,
     nodes: Sequence[type] = (),
@@ -153,10 +150,8 @@ def make_runner(
 ) -> Runner:
     """Load the mission, which `read_inputs` has checked, then make the robot around it.
 
-    Args:
-        resume: the policy after a crash; with one, a journal is kept. `journal`: where, else `journal_path`.
-        is_placed: the start pose was given by a person, who knows where the robot stands.
-        confirm: asks a person a question.
+    With `resume` a journal is kept, and looked at first.
+
     Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
@@ -168,10 +163,8 @@ def make_runner(
         return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
 
     mission = load(inputs.mission_path, **of_file)
-    resumption = None
-    if resume is not None:
-        path = journal_path(inputs) if journal is None else Path(journal)
-        resumption = decide(resume, path, inputs, mission, inputs.start if is_placed else None, calendar_ns(), confirm)
+    resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
+    if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from typing import ClassVar, Final
 
 from py_trees.common import Status
 
 from pluto_bt.behaviours.destinations import Destination
+from pluto_bt.behaviours.free_itself import FreeItself
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
-from pluto_bt.behaviours.path_driver import PathDriver
+from pluto_bt.behaviours.path_driver import REFRESH_S, PathDriver
 from pluto_bt.behaviours.plan_path import GOAL, TOLERANCE, goal_of
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
@@ -46,6 +48,8 @@ class NavigateTo(PathDriver):
         self._has_path, self._stuck_count = False, 0
         self._blind_since_s = self._looked_s = self._planned_s = self._last_s
         self._blocked_since_s: float | None = None
+        self._freeing: FreeItself | None = None
+        self._freed_s = -math.inf
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)
 
@@ -58,6 +62,8 @@ class NavigateTo(PathDriver):
         here = self.here(robot)
         if isinstance(here, Status):
             return here
+        if self._freeing is not None:
+            return self._free(robot, self._freeing)
         if not self._has_path:
             return self._plan(robot, here)
         if self._last_s - self._looked_s >= LOOK_EVERY_S:
@@ -97,7 +103,18 @@ class NavigateTo(PathDriver):
         return self.wait("every way is blocked: waiting")
 
     def _try_again(self, robot: Robot) -> Status:
+        """Come away from where it is stuck, then look for a way anew."""
         self._stuck_count += 1
-        self._has_path, self._ticket = False, None
-        self.reason = ""
-        return self.wait("stuck: looking for another way")
+        self._has_path, self.reason = False, ""
+        self._freeing = FreeItself(robot.surroundings, self._last_s)
+        return self._free(robot, self._freeing)
+
+    def _free(self, robot: Robot, freeing: FreeItself) -> Status:
+        speed_mps = freeing.speed_mps(robot.surroundings, self._last_s)
+        if speed_mps == 0.0:
+            self._freeing, self._ticket = None, None
+            return self.wait("looking for a way anew")
+        if self._ticket is None or self._ticket.command.velocity != (speed_mps, 0.0) or self._last_s - self._freed_s >= REFRESH_S:
+            self._freed_s = self._last_s
+            self.post(robot, CommandType.VELOCITY, velocity=(speed_mps, 0.0))
+        return self.wait("coming away from where it was stuck")

@@ -6,7 +6,7 @@ A `Play` notes every velocity command of the base and how long the robot stands 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 from pluto_bt.behaviours.reasons import REASONS
@@ -56,9 +56,10 @@ class Play:
         words: every reason that `motion/status` gave, in order of first appearance.
     """
 
-    def __init__(self, inputs: Inputs, max_time_s: float, nodes: Sequence[type] = ()) -> None:
+    def __init__(self, inputs: Inputs, max_time_s: float, before: Callable[[Runner], None] = lambda runner: None) -> None:
+        """`before`: something to arrange before the run begins."""
         self.events: list[Any] = []
-        self.runner: Runner = make_runner(inputs, max_time_s=max_time_s, nodes=nodes, on_event=self.events.append)
+        self.runner: Runner = make_runner(inputs, max_time_s=max_time_s, on_event=self.events.append)
         self.commands: list[tuple[float, float, float]] = []
         self.words: dict[str, float] = {}
         self.codes: dict[int, float] = {}
@@ -67,6 +68,7 @@ class Play:
         board = self.runner.system.board
         board.on_change("ATRV2/Drive/Command", self._note_command)
         board.on_change("motion/status", self._note_status)
+        before(self.runner)
         self.result = self.runner.run()
 
     def _note_command(self) -> None:

@@ -36,6 +36,7 @@ class Outcome(NamedTuple):
 def run_once(folder: str, policy: str, kill_at: int = 0) -> None:
     """One run in this process; with `kill_at` it kills itself after that many steps of the executive. Leaves `run.json` and `said.txt`."""
     from pluto_bt.commands.inputs import Request, read_inputs
+    from pluto_bt.resume import ResumeRequest
     from pluto_bt.runner import make_runner
 
     said = Path(folder, "said.txt").open("a", encoding="utf-8")  # noqa: SIM115  a killed process closes nothing anyway
@@ -46,8 +47,8 @@ def run_once(folder: str, policy: str, kill_at: int = 0) -> None:
             said.write(event.text + "\n")
             said.flush()
 
-    runner = make_runner(read_inputs(Request(MISSION, world="yard.xml")), resume=policy, journal=Path(folder, "journal"), on_event=hear,
-                         max_time_s=2.0 if policy == "hold" else SECONDS)  # fmt: skip
+    runner = make_runner(read_inputs(Request(MISSION, world="yard.xml")), resume=ResumeRequest(policy, Path(folder, "journal")),
+                         on_event=hear, max_time_s=2.0 if policy == "hold" else SECONDS)  # fmt: skip
     runner.mission.watch(lambda number, word: steps.append([runner.mission.nodes()[number].path, word]))
     executive = runner.system.executive
     step, count = executive.step, 0

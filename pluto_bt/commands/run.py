@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import argparse
 import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from pluto_bt.commands.options import Parser
 from pluto_bt.result import RunResult
 from pluto_bt.source import Faults, InputError
+
+if TYPE_CHECKING:
+    from pluto_bt.resume import ResumeRequest
 
 
 def main(argv: list[str]) -> int:
@@ -51,6 +56,14 @@ def _confirm(question: str) -> bool:
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
+def _resume(args: argparse.Namespace) -> ResumeRequest | None:
+    from pluto_bt.resume import ResumeRequest
+
+    if args.resume is None:
+        return None
+    return ResumeRequest(args.resume, None if args.journal is None else Path(args.journal), args.start is not None, _confirm)
+
+
 def _run(args: argparse.Namespace) -> RunResult:
     from pluto_bt.commands.files import refuse_shadowed_packages
     from pluto_bt.commands.inputs import Request, read_inputs
@@ -71,9 +84,8 @@ def _run(args: argparse.Namespace) -> RunResult:
 
     progress = make_progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
-        inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record, resume=args.resume,
-        journal=args.journal, is_placed=args.start is not None, confirm=_confirm, gateway=args.gateway, groot=args.groot, on_event=progress.event,
-        on_progress=progress.show,
+        inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
+        resume=_resume(args), gateway=args.gateway, groot=args.groot, on_event=progress.event, on_progress=progress.show,
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

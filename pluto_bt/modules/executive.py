@@ -71,7 +71,7 @@ class Executive:
                 self.on_ticked(ticked, lines)
             self._guardian.look(ticked, now_s)
         if self.keeper is not None:
-            self._keep(self.keeper, ticked, now_s)
+            self._keep(self.keeper, ticked, lines, now_s)
         if self._log is not None:
             self._log.step(now_s, ticked, lines)
         else:
@@ -89,16 +89,19 @@ class Executive:
             self._events.put(event, now_s)
             self.on_event(event)
 
-    def _keep(self, keeper: JournalKeeper, ticked: list[Activity], now_s: float) -> None:
-        """The journal of the mission, before anybody else acts on what it decided."""
-        mission = self.core.mission
-        if mission is None or mission not in ticked:
-            keeper.look(now_s)
+    def _keep(self, keeper: JournalKeeper, ticked: list[Activity], lines: list[str], now_s: float) -> None:
+        """The journal of the mission; it ends with the mission, or when another one takes its place."""
+        activity = self.core.mission
+        if activity is None:
             return
-        keeper.after_tick(now_s, mission.ticks)
-        if mission.is_over:
+        is_its = activity.mission is keeper.mission
+        if is_its and activity in ticked:
+            keeper.after_tick(now_s, activity.ticks, lines[ticked.index(activity)])
+        if not is_its or activity.is_over:
             keeper.end()
             self.keeper = None
+        else:
+            keeper.look(now_s)
 
     @property
     def contracts(self) -> list[Kept]:

@@ -24,10 +24,11 @@ class JournalKeeper:
     """
 
     def __init__(self, mission: Mission, journal: Journal, past: Past, where: Callable[[], tuple[Pose | None, Pose | None]]) -> None:
-        self._mission, self._journal, self._where = mission, journal, where
+        self.mission, self._journal, self._where = mission, journal, where
         self._state: State = past.state if past.state["nodes"] else {"nodes": {}, "board": {}}
         self._begun, self._keys = dict(past.begun), past.keys
         self._finished: list[tuple[str, str]] = []
+        self._has_ended, self._line = False, ""
         self._told_s = 0.0
         tracked = mission.nodes()
         self._paths = [one.path for one in tracked]
@@ -37,17 +38,22 @@ class JournalKeeper:
                 one.node.step = self._once(one.node, one.path, one.node.step)
         mission.watch(self._ended)
 
-    def after_tick(self, now_s: float, ticks: int) -> None:
-        """Write what has changed; sure to be on the disk before the next tick if a step has finished."""
-        now = memory.take(self._mission)
+    def after_tick(self, now_s: float, ticks: int, line: str) -> None:
+        """Write what has changed; sure to be on the disk before the next tick if a step has finished.
+
+        `line`: the statuses of the tick. Where no leaf has ended and no status is new, nothing is remembered that matters.
+        """
+        if line == self._line and not self._has_ended:
+            return
+        self._line, self._has_ended = line, False
+        now = memory.take(self.mission)
         change = memory.changed(self._state, now)
         if change or self._finished:
             self._state = now
             pose, truth = self._where()
-            line = Line("step", calendar_ns(), {}, ticks, tuple(self._finished), change, dict(self._begun), (), pose, truth)
-            self._journal.write(line, is_sure=bool(self._finished))
+            told = Line("step", calendar_ns(), {}, ticks, tuple(self._finished), change, dict(self._begun), (), pose, truth)
+            self._journal.write(told, is_sure=bool(self._finished))
             self._finished.clear()
-        self.look(now_s)
 
     def look(self, now_s: float) -> None:
         """Once a second, also while the mission waits: where the robot is."""
@@ -62,6 +68,7 @@ class JournalKeeper:
         self._journal.close()
 
     def _ended(self, number: int, word: str) -> None:
+        self._has_ended = True
         if self._is_step[number]:
             self._finished.append((self._paths[number], word))
 

@@ -27,6 +27,8 @@ from pluto_bt.modules.motion_check_shown import MotionCheckShown
 from pluto_bt.modules.motion_sources import MotionSources
 from pluto_bt.modules.post_box import refusal
 
+JUMP_M, TURNED_RAD = 1.0, math.radians(5.0)  # a post that moves position or heading farther is told
+
 
 class LocalParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Table `[local]` of the platform file: how wrong a step of dead reckoning may be, and when a setter counts as gone."""
@@ -58,6 +60,7 @@ class Local:
         self._say = context.say
         self._sources = MotionSources(context, p.step_noise(), p.yaw_enable)
         self._check = MotionCheckShown(context, self._sources.check)
+        self._wheels_know_turns = context.platform.body.kinematics != "ackermann"
         self._mount = LaserMount(context)
         self._box = context.posts
         self.track = Track(context.start_pose)
@@ -103,7 +106,7 @@ class Local:
 
     def _accept(self, source: str, post: Pose, now_s: float) -> None:
         """Adjust the track by a post. The setter is checked again here: it may have changed since the post was left."""
-        refused = refusal(post.setter, self._box.set_by) or self._adjust(post)
+        refused = refusal(post.setter, self._box.set_by) or self._adjust(post, now_s)
         if refused:
             self._say("warning", refused, "local", f"pose posted by {source} at {post.stamp_s:.3f} s not taken: {refused}")
             return
@@ -112,21 +115,27 @@ class Local:
             self._check.found(now_s)
         self._post_pose.put(post, now_s)
 
-    def _adjust(self, post: Pose) -> str:
+    def _adjust(self, post: Pose, now_s: float) -> str:
         if post.setter == Setter.NOBODY:  # the poster has ended: its last adjustment stays
             return ""
         if not all(map(math.isfinite, (*post.pose, *post.covariance))):
             return "bad-value"
         pose, P = (post.pose[0], post.pose[1], post.pose[3]), from_nine(post.covariance)
+        then = self.track.at(post.stamp_s)
         if post.setter > 0:
-            then = self.track.at(post.stamp_s)
             mount = None if then is None else self._mount.planar(then)
             if mount is None:
                 self.dropped += 1
                 return "stamp-not-in-history"
             robot = compose(pose, inverse(mount))
             P, pose = moved(P, robot[0] - pose[0], robot[1] - pose[1]), robot
+        jump_m = 0.0 if then is None else math.dist(pose[:2], then.pose_map[:2])
+        turned_rad = 0.0 if then is None else wrap_angle(pose[2] - then.pose_map[2])
         if self.track.adjust(post.stamp_s, pose, P):
+            if not self._wheels_know_turns and abs(turned_rad) > TURNED_RAD:
+                self._sources.check.turn.put_right(now_s, turned_rad)
+            if jump_m > JUMP_M:
+                self._say("warning", "pose-jump", "local", f"a post moves the position by {jump_m:.1f} m; it is believed")
             return ""
         self.dropped += 1
         return "stamp-not-in-history"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from typing import Annotated
 
 import msgspec
@@ -16,6 +17,7 @@ from pluto_bt.blackboard.poses import pose_at
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 
+JUDGED = 3  # accepted markers whose headings are judged together
 TOO_OLD = "too-old"  # nobody remembers where the robot pointed then
 
 
@@ -28,6 +30,7 @@ class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     heading_pull: Annotated[float, Meta(ge=0, le=1, description="share of the heading's error that one accepted marker takes away")] = 0.05
     position_noise_m: Annotated[float, Meta(gt=0, description="standard deviation of a marker's position")] = 0.03
     heading_noise_deg: Annotated[float, Meta(gt=0, description="standard deviation of a marker's heading")] = 2.0
+    most_heading_bias_deg: Annotated[float, Meta(gt=0, description="median of the last three; more: the gyro is wrong")] = 8.0
     far_m: Annotated[float, Meta(gt=0, description="from the estimate; an accepted marker farther off must be confirmed by the next")] = 0.5
 
 
@@ -48,6 +51,8 @@ class Marker:
         p = context.parameters(MarkerParameters)
         self._parameters = p
         self._was_far = False
+        self._say = context.say
+        self._off_rad: deque[float] = deque(maxlen=JUDGED)  # heading of the last accepted markers less the estimate's
         self.gate = MarkerGate(p.min_quality, math.radians(p.max_heading_error_deg), p.max_speed_mps)
 
     def start(self, now_s: float) -> None:
@@ -82,6 +87,17 @@ class Marker:
         was_far, self._was_far = self._was_far, is_far
         return was_far or not is_far
 
+    def _bias_rad(self, off_rad: float) -> float:
+        """What five markers in a row agree upon against the gyro; 0 while they do not."""
+        self._off_rad.append(off_rad)
+        bias_rad = sorted(self._off_rad)[JUDGED // 2] if len(self._off_rad) == JUDGED else 0.0  # the median: one nonsense marker says nothing
+        if abs(bias_rad) < math.radians(self._parameters.most_heading_bias_deg):
+            return 0.0
+        self._off_rad.clear()
+        text = f"the last {JUDGED} markers see the car {math.degrees(bias_rad):+.0f} deg from where the gyro says it points: the heading is put right"
+        self._say("warning", "gyro-drift", "marker", text)
+        return bias_rad
+
     def _newest(self) -> Pose | None:
         """The estimate now; None before the first."""
         sample = self._board.newest("Localization/Pose")
@@ -89,7 +105,7 @@ class Marker:
 
     def _post(self, r: MarkerRecord, heading_rad: float, heading_var_rad2: float) -> None:
         p = self._parameters
-        theta_rad = heading_rad + p.heading_pull * wrap_angle(r.theta_rad - heading_rad)
+        theta_rad = heading_rad + p.heading_pull * wrap_angle(r.theta_rad - heading_rad) + self._bias_rad(wrap_angle(r.theta_rad - heading_rad))
         xy, tt = p.position_noise_m**2, (1 - p.heading_pull) ** 2 * heading_var_rad2 + (p.heading_pull * math.radians(p.heading_noise_deg)) ** 2
         covariance = (xy, 0.0, 0.0, 0.0, xy, 0.0, 0.0, 0.0, tt)
         self._box.post("marker", Pose(r.stamp_s, (r.x_m, r.y_m, 0.0, theta_rad, 0.0, 0.0), covariance, Setter.JUST_SET))

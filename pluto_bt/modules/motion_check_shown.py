@@ -50,9 +50,10 @@ class MotionCheckShown:
 
     def found(self, now_s: float) -> None:
         """Somebody has posted where the robot is."""
-        if self._check.lost:
-            self._say("info", "found", "local", "a pose was posted: the robot is not lost any more")
+        was_lost = self._check.lost
         self._check.found()
+        if was_lost and not self._check.lost:
+            self._say("info", "found", "local", "a pose was posted: the robot is not lost any more")
 
     def tell(self, now_s: float) -> None:
         """Findings to the events, the state to the topic."""
@@ -70,7 +71,7 @@ class MotionCheckShown:
         code = IS_LOST if check.lost else AGREED if state == FINE else CORRECTED
         word, text = (self._word, self._text) if code != AGREED else ("", "")
         if check.lost:
-            word, text = LOST, self._lost_text
+            word, text = LOST, self._lost_text or self._text
         elif check.turn.is_settling:
             word, text = NO_POSE, SETTLING
         self._topic.put(FVectorState(now_s, (state[0], state[1], check.fits), (code,), word, text), now_s)

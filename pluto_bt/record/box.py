@@ -77,8 +77,11 @@ class Box:
         return len(self._packed)
 
     def tick(self, number: int) -> Tick:
-        """The tick of that number; 0 is the first that the file still has."""
-        return _ticks.decode(self._packed[number])
+        """The tick of that number; 0 is the first that the file still has. What it tells of a tree that was lost is left out."""
+        tick = _ticks.decode(self._packed[number])
+        if any(branch.run not in self.trees for branch in tick.trees):
+            tick.trees = tuple(branch for branch in tick.trees if branch.run in self.trees)
+        return tick
 
     def number_at(self, t_s: float) -> int:
         """The last tick at or before a time; the first one if all are later. -1 without any."""
@@ -154,6 +157,16 @@ def open_box(path: Path, shown: str, faults: Faults) -> Box | None:
     file = open_mcap(path, shown, faults)
     if file is None:
         return None
+    try:
+        return _read(file, shown, faults)
+    except (msgspec.MsgspecError, KeyError) as error:
+        faults.error(Place(shown), "broken-black-box", f'"{shown}" is a black box that makes no sense', expected="a file of `pluto run --record`",
+                     found=str(error), mend="record the run again")  # fmt: skip
+        return None
+
+
+def _read(file: McapFile, shown: str, faults: Faults) -> Box | None:
+    """Raises: MsgspecError, KeyError for a file that something has spoiled."""
     times_ns: list[int] = []
     packed: list[bytes] = []
     trees: dict[int, Tree] = {}

@@ -25,6 +25,7 @@ SEARCH_S: Final = 10.0
 LOST_S: Final = 8.0
 CLOSE_UP_PER_S: Final = 0.8  # speed for each metre that the distance is too long, on top of the target's own
 HYSTERESIS_M: Final = 0.15
+AROUND_S, AROUND_RAD = 3.5, math.radians(60.0)  # after so long out of sight it is looked for all around
 CORNER_M: Final = 0.3  # so near the robot goes to where a hidden target was expected: round the corner one sees more from the corner
 
 
@@ -55,6 +56,7 @@ class Follow:
         self._tracks = Tracks()
         self._start_s = now_s
         self._drives = False
+        self._turn_side = 1.0
         self.target: Track | None = None
 
     def see(self, pieces: list[Piece], robot: Planar, stamp_s: float) -> None:
@@ -87,13 +89,21 @@ class Follow:
         too_far_m = away_m - (self._distance_m if self.state(now_s) is Search.SEEN else CORNER_M)
         self._drives = too_far_m > (HYSTERESIS_M / 3.0 if self._drives else HYSTERESIS_M)
         if not self._drives:
-            if self.state(now_s) is Search.HIDDEN:  # at the place itself: look where he went
-                turn_rad = math.remainder(math.atan2(self.target.vy_mps, self.target.vx_mps) - robot[2], math.tau)
+            if self.state(now_s) is Search.HIDDEN:
+                turn_rad = self._look_around(self.target, robot[2], now_s)
             return Aim((x, y), 0.0, turn_rad, away_m)
         share = too_far_m / away_m
-        flees_mps = max(0.0, (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m)
-        speed_mps = min(self._most_mps, flees_mps + CLOSE_UP_PER_S * too_far_m)
+        flees_mps = (self.target.vx_mps * dx + self.target.vy_mps * dy) / away_m if self.state(now_s) is Search.SEEN else 0.0
+        speed_mps = max(0.0, min(self._most_mps, flees_mps + CLOSE_UP_PER_S * too_far_m))  # who comes back is awaited standing
         return Aim((robot[0] + share * dx, robot[1] + share * dy), speed_mps, turn_rad, away_m)
+
+    def _look_around(self, target: Track, heading_rad: float, now_s: float) -> float:
+        """How to turn at the place where a hidden target was expected: first to where it went, then on around."""
+        turn_rad = math.remainder(math.atan2(target.vy_mps, target.vx_mps) - heading_rad, math.tau)
+        if now_s - target.seen_s < AROUND_S:
+            self._turn_side = math.copysign(1.0, turn_rad)
+            return turn_rad
+        return self._turn_side * AROUND_RAD
 
     def _choose(self, robot: Planar, now_s: float) -> None:
         """The nearest that moves."""

@@ -77,7 +77,7 @@ class Goto:
     def pause(self, now_s: float, dt_s: float) -> None:
         """Time in which the robot had to stand for a reason outside of goto (laser rebooting) does not count as being stuck."""
         self._progress_s = min(now_s, self._progress_s + dt_s)
-        self._moved_s = min(now_s, self._moved_s + dt_s)
+        self._moved_s, self._came_s = min(now_s, self._moved_s + dt_s), min(now_s, self._came_s + dt_s)
 
     def step(self, now_s: float, pose: Planar, odometry: Planar, points: Array) -> Way:
         """The next decision.

@@ -94,12 +94,13 @@ class PathFollowing:
         return float(last[0]), float(last[1])
 
     def _is_near(self, robot: Planar, stretch: Array, last: Array) -> bool:
-        """True if the straight way to `last` leaves no point between farther aside than its room allows."""
+        """True if the straight way to `last` leaves no point between farther aside than its room allows, or than the robot is off by now."""
         dx, dy = last[0] - robot[0], last[1] - robot[1]
         x, y = stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]
         share = np.clip((dx * x + dy * y) / max(dx * dx + dy * dy, 1e-12), 0.0, 1.0)  # of the way there, where it is nearest to each point
         aside = np.hypot(x - share * dx, y - share * dy)
-        return bool((aside <= self._cut_m[self.place : self.place + len(stretch)]).all())
+        off_m = math.hypot(float(x[0]), float(y[0]))
+        return bool((aside <= np.maximum(self._cut_m[self.place : self.place + len(stretch)], off_m)).all())
 
 
 def first_nearest(away_m: Array) -> int:

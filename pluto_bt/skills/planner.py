@@ -15,6 +15,7 @@ from pluto_bt.skills.way_kernels import search
 Point = tuple[float, float]
 RELAXED_M = 0.8  # so near to its start and its goal a way may be tighter
 REACH_CELLS = 1.0
+TURNING_GAP_M = 0.08  # a way with so much around a robot that turns on the spot costs no more: doors are then approached straight
 STEP_M = 0.1  # between the points of a way
 GREED = 1.08  # steps go along the grid and its diagonals, which is up to 8 % longer than straight
 _NO_RECTANGLE = np.zeros(7)
@@ -28,7 +29,8 @@ class Planner:
         cell_m, count = plan_map.frame.cell_m, plan_map.cells.size
         self._side_m = outline.side_m
         self.least_m = outline.side_m + parameters.gap_m  # from the middle of the robot to what stands
-        self._half = (outline.side_m + max(parameters.room_m, parameters.gap_m + 0.05)) / cell_m
+        room_m = max(outline.side_m + parameters.room_m, outline.reach_m + TURNING_GAP_M, self.least_m + 0.05)
+        self._half = room_m / cell_m
         self._wide = max((outline.side_m + parameters.wide_m) / cell_m, self._half + 1.0)
         self._cost = np.zeros(count, dtype=np.float32)
         self._came = np.zeros(count, dtype=np.int32)

@@ -78,7 +78,7 @@ class RayFollowing:
 
     def pause(self, now_s: float) -> None:
         """Time in which the robot had to wait for another reason does not count as being stuck."""
-        self._mark_s = now_s
+        self._mark_s = self._turn_mark_s = now_s
 
     def _keep_way(self, now_s: float, robot: Planar) -> bool:
         """Cut off what lies behind; look for a new way now and then, and where the old one has been blocked. False if there is none."""

@@ -55,7 +55,7 @@ class SeenSpace:
         for cells in (self.seen, self._heard, self.stamps, self.spots):
             cells.fill(NEVER)
         self._last_ranges_m = None
-        self._rounds.clear()
+        self.drop_echoes()
 
     def add_scan(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, people: Array) -> bool:
         """Take a scan from where the laser was, yaw with the wrist's pan. One that looks down finds low things, and proves nothing free.

@@ -36,7 +36,7 @@ def first_trouble(
         figures: the robot's twist now, its limits, how long the command holds before the brakes bite, and so on (the constants above).
         speed_mps, turn_rate_radps: the command.
         known_since_s: cells seen before are not known any more.
-        walkers: (k, 7) the discs in which the middles of walkers are; see `walkers.Walker.row`.
+        walkers: (k, 7) the discs in which the middles of walkers are; see `Walker.row`.
         fresh_since_s: nobody who is out of view is where it was seen to be free since.
     Returns: (CLEAR, -1, 0), (MEETS, point, s), (UNSEEN, rim point, s) or (WALKER, rim point, s): what comes first, and when.
     """

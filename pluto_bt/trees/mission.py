@@ -4,36 +4,23 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.board_view import BoardView
 from pluto_bt.trees.contracts import Contract, ContractWatch
-from pluto_bt.trees.controls.reactive import ReactiveSequence
-from pluto_bt.trees.controls.sequence import Sequence
-from pluto_bt.trees.controls.try_catch import TryCatch
-from pluto_bt.trees.decorators.plain import ForceFailure, Inverter
+from pluto_bt.trees.deciding import decider_of
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result, name_of
 from pluto_bt.trees.errors import StepError, TickError
+from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.tracked import Tracked, letter_of
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
-
-
-class Origin(NamedTuple):
-    """Where a mission came from: its text, or the file that was read; `files` are the paths of that file and all it includes."""
-
-    text: str = ""
-    file: str = ""
-    files: tuple[str, ...] = ()
-
-
-NOWHERE: Final = Origin()
 
 
 class Mission:
@@ -157,13 +144,8 @@ class Mission:
 
     def deciding_node(self) -> Tracked | None:
         """The node whose FAILURE the mission's is, usually a leaf: followed down from the root; None if the root did not fail."""
-        by_node = {id(tracked.node): tracked for tracked in self._tracked}
-        node = self.root
-        if _last(node) is not FAILURE:
-            return None
-        while (child := _culprit(node)) is not None:
-            node = child
-        return by_node[id(node)]
+        node = decider_of(self.root)
+        return None if node is None else next(tracked for tracked in self._tracked if tracked.node is node)
 
     def deciding_reason(self) -> str:
         """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if the root did not fail."""
@@ -267,18 +249,3 @@ def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
         halt()
     except Exception as error:
         errors.append(error)
-
-
-def _last(node: Any) -> Result:
-    result: Result = node.last if node.status is IDLE else node.status
-    return result
-
-
-def _culprit(node: Any) -> Any:
-    """The child that made `node` fail: a sequence ends with the first that fails, others with the last; below an Inverter one succeeded."""
-    failed = [child for child in node.children if _last(child) is FAILURE]
-    if failed:
-        return failed[0] if isinstance(node, (Sequence, ReactiveSequence, TryCatch)) else failed[-1]
-    if isinstance(node, (Inverter, ForceFailure)):
-        return next((child for child in node.children if _last(child) is SUCCESS), None)
-    return None

@@ -27,7 +27,8 @@ OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
     reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
     reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
-    reasons.NO_POSE: ("localisation", "Localization/Pose"), "lost": ("localisation", "Localization/Pose"),
+    reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
+    reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
     "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
 }  # fmt: skip
@@ -183,7 +184,7 @@ def _rank(word: str) -> int:
     """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
     if word in (reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN, reasons.BUMPER):
         return 0
-    if word in (reasons.NO_POSE, "lost", "tilted", "hindered", reasons.OUTSIDE_MAP):
+    if word in (reasons.NO_POSE, reasons.LOST, "tilted", "hindered", reasons.OUTSIDE_MAP):
         return 1
     return 2 if word in OF_SENSOR else 3
 

@@ -142,3 +142,42 @@ def test_a_pause_does_not_count() -> None:
     assert follow.state(20.0) is Search.LOST
     follow.pause(14.0)
     assert follow.state(20.0) is Search.SEEN
+
+
+def test_one_who_stops_while_he_is_hidden_is_found_where_he_stands_and_furniture_is_not_him() -> None:
+    def guide(t: float) -> tuple[float, float] | None:
+        return straight(t) if t < 8.0 else None if t < 11.0 else (8.6, 0.6)
+
+    follow, distances, state = play({"guide": guide, "post": lambda t: (6.0, -0.9), "bin": lambda t: (7.5, 1.4)}, 25.0)
+    assert state is Search.SEEN
+    assert follow.target is not None and math.dist((follow.target.x_m, follow.target.y_m), (8.6, 0.6)) < 0.3
+    assert distances[-1] == pytest.approx(1.5, abs=0.4)
+
+
+def test_a_scan_that_cuts_him_in_two_does_not_part_him_from_his_track() -> None:
+    follow = Follow(1.5, 0.8, 0.0)
+    for k in range(60):
+        x, y = straight(0.2 * k)
+        halves = [Piece(x, y - 0.12, 0.22), Piece(x, y + 0.12, 0.22)]
+        follow.see(halves if k == 30 else [Piece(x, y, 0.46)], HERE, 0.2 * k)
+    assert follow.target is not None and follow.target.born_s == 0.0
+    assert follow.state(12.0) is Search.SEEN
+
+
+def test_two_who_cross_keep_their_tracks() -> None:
+    follow = Follow(1.5, 0.8, 0.0)
+    for k in range(60):
+        t = 0.2 * k
+        one, other = (3.0, -2.0 + 0.5 * t), (3.5, 2.5 - 0.5 * t)
+        hidden = abs(math.atan2(other[1], other[0]) - math.atan2(one[1], one[0])) < 0.12
+        follow.see([Piece(*one, 0.46)] + ([] if hidden else [Piece(*other, 0.46)]), HERE, t)
+    assert follow.target is not None
+    assert math.dist((follow.target.x_m, follow.target.y_m), one) < 0.3, "the nearest, from the beginning to the end"
+
+
+def test_a_lost_beam_does_not_cut_a_body() -> None:
+    ranges = scan((3.0, 0.0, 0.25))
+    ranges[180] = 8.0
+    ranges[184] = np.nan
+    (piece,) = pieces(ranges)
+    assert piece.width_m == pytest.approx(0.5, abs=0.06)

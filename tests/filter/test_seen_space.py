@@ -15,7 +15,8 @@ from pluto_bt.skills.seen_kernels import CELL_M, LEVEL, LOW, NEVER
 from pluto_bt.skills.seen_space import SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, WALKER, first_trouble, rim_of
-from pluto_bt.skills.walkers import NOBODY, Walker
+from pluto_bt.skills.walker import Walker
+from pluto_bt.skills.walkers import NOBODY
 from tests.chain.robots import ATRV2, PIONEER
 
 OUTLINE = outline_of(ATRV2.body.outline_m)
@@ -81,7 +82,7 @@ def test_a_scan_that_looks_down_finds_low_things_but_believes_no_lone_short_beam
     angles = np.radians(np.arange(361) / 2.0 - 90.0)
     ground = np.minimum(80.0, 0.6 / np.maximum(np.cos(angles) * math.sin(tilt_rad), 1e-9))
     ground[list(beams)] = 1.0
-    one.add_scan(scan(ground), (0.0, 0.0, 0.0), 0.6, tilt_rad)
+    one.add_scan(scan(ground), (0.0, 0.0, 0.0), 0.6, tilt_rad, NOBODY)
     assert bool((one.stamps[LOW] > NEVER).any()) == is_there
 
 

@@ -6,6 +6,7 @@ import json
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from pluto_bt.cli import main
@@ -138,6 +139,21 @@ def test_a_file_that_is_no_black_box_is_refused(tmp_path: Path, capsys: pytest.C
         assert "is no MCAP file" in capsys.readouterr().err
         assert main([command, str(tmp_path / "none.mcap")]) == 2
         assert "expected  a black box" in capsys.readouterr().err
+
+
+def test_a_spoiled_black_box_is_refused_or_read_but_never_a_traceback(scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "m.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="m"><Sleep msec="900"/></BehaviorTree></root>', encoding="utf-8")
+    scenario("yard.xml", mission=str(tmp_path / "m.xml"), record=tmp_path / "a.mcap")
+    data = (tmp_path / "a.mcap").read_bytes()
+    rng = np.random.default_rng(0)
+    for _ in range(60):
+        spoiled = bytearray(data)
+        for at in rng.integers(8, len(data) if rng.random() < 0.5 else 3000, size=3):
+            spoiled[at] ^= int(rng.integers(1, 256))
+        (tmp_path / "b.mcap").write_bytes(spoiled)
+        for words in (["info"], ["replay"], ["why"]):
+            assert main([*words, str(tmp_path / "b.mcap")]) in (0, 1, 2)
+    capsys.readouterr()
 
 
 def test_a_run_becomes_a_test_that_passes_and_that_can_fail(scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

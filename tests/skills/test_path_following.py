@@ -69,3 +69,9 @@ def test_who_makes_no_headway_is_stuck_but_not_while_he_waits() -> None:
 def test_a_path_of_one_point() -> None:
     path = following(np.array([(1.0, 2.0)]))
     assert path.step((0.0, 0.0, 0.0), 0.0) == (1.0, 2.0) and path.left_m == 0.0 and path.off_m((0.0, 0.0, 0.0)) == -2.0
+
+
+def test_who_was_pushed_aside_is_led_back_gently() -> None:
+    path = following(CORNER, 0.5, ahead_m=2.0)
+    x, y = path.step((1.0, 0.6, 0.0), 0.0)
+    assert x - 1.0 >= 1.9 and y == 0.0

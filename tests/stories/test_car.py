@@ -134,3 +134,26 @@ def test_a_fault_of_its_own_sensors_never_drives_it_into_a_wall(scenario: Play, 
     assert run.collisions == 0
     assert run.reason == ends, run.text
     assert run.exit_code == {"": 0, "base-lost": 3}.get(ends, 1)
+
+
+@pytest.mark.parametrize(
+    ("kind", "result", "reason"),
+    [('kind="jump" value="0.3"', "SUCCESS", ""), ('kind="jump" value="-0.05"', "SUCCESS", ""), ('kind="stuck"', "FAILURE", "lost"),
+     ('kind="garbage"', "FAILURE", "lost")],
+)  # fmt: skip
+def test_a_gyro_that_lies_is_found_out_by_the_markers(scenario: Play, corridor: Path, kind: str, result: str, reason: str) -> None:
+    """What the markers agree upon puts the heading right; a drift is taken off; a gyro that makes no sense stops the car."""
+    script = f'<script><at t="10"><fault device="imu" {kind}/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 1, 3)
+    assert (run.result, run.reason, run.collisions) == (result, reason, 0), run.text
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.3
+    assert run.said("gyro-drift") or run.said("gyro-refused")
+
+
+def test_markers_that_are_all_off_by_two_metres_are_told(scenario: Play, corridor: Path) -> None:
+    script = '<script><at t="10"><fault device="marker" kind="jump" value="2"/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 1, 3)
+    assert run.collisions == 0 and run.result == "FAILURE"
+    assert "moves the position by 2.8 m" in run.said("pose-jump")[0]

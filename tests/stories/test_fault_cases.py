@@ -9,8 +9,10 @@ import pytest
 
 from pluto_bt.bench.fault_plays import Play
 from pluto_bt.bench.faults import play_pair
-from pluto_bt.blackboard.codes import LinkStatus
+from pluto_bt.blackboard.codes import LinkStatus, Setter
+from pluto_bt.blackboard.messages import Pose
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.runner import Runner
 from tests.fault_cases import CASES, GOES_ON, HALL, T_S, FaultCase
 
 GOAL = (4.0, 0.5)
@@ -48,3 +50,41 @@ def test_a_fatal_laser_shows_status_7_and_the_mission_only_waits(tmp_path: Path)
 def test_two_faults_at_once_in_a_place_drawn_at_random_do_no_harm_and_are_told(seed: int) -> None:
     pair = play_pair(seed)
     assert pair.complaints == [], pair.text
+
+
+def told_where_it_is(script: str, at_s: float, off_m: float, folder: Path) -> Play:
+    """A patrol whose pose is posted at `at_s`: where it really is, and `off_m` to its left."""
+
+    def tell(runner: Runner) -> None:
+        system, done = runner.system, list[bool]()
+
+        def post() -> None:
+            if system.simulator.time_s < at_s or done:
+                return
+            done.append(True)
+            x, y, theta = system.simulator.pose
+            x, y = x - off_m * math.sin(theta), y + off_m * math.cos(theta)
+            assert system.context.posts.post("somebody", Pose(at_s, (x, y, 0.0, theta, 0.0, 0.0), setter=Setter.JUST_SET)) == ""
+
+        system.board.on_change("world/state", post)
+
+    (folder / "hall.xml").write_text(HALL.format(platform="atrv2", script=script), encoding="utf-8")
+    ports = [f"goals={GOAL[0]},{GOAL[1]}", "timeout_s=60"]
+    return Play(read_inputs(Request("patrol.xml", world=str(folder / "hall.xml"), port=ports)), max_time_s=120.0, before=tell)
+
+
+@pytest.mark.parametrize("off_m", [0.0, -2.0, 0.8])
+def test_a_pose_that_jumps_is_believed_and_nothing_is_touched(off_m: float, tmp_path: Path) -> None:
+    """Whoever posts poses is trusted: it drives on to the goal as it now believes it to lie, if that is not in the wall."""
+    play = told_where_it_is("", 6.0, off_m, tmp_path)
+    assert play.complaints(abs(off_m) + 0.2) == []
+    believed = play.result.estimated_pose
+    assert play.result.result == "SUCCESS" and believed is not None and math.dist(believed[:2], GOAL) < 0.4
+
+
+def test_a_kidnapped_robot_that_is_told_where_it_is_goes_on(tmp_path: Path) -> None:
+    play = told_where_it_is(f'<at t="{T_S:g}"><place id="pluto" x="-3" y="-2.5" theta_deg="70"/></at>', T_S + 2.0, 0.0, tmp_path)
+    assert play.result.result == "SUCCESS", play.result.text
+    assert math.dist(play.result.final_pose[:2], GOAL) < SUCCESS_WITHIN_M
+    assert [event.code for event in play.events if event.code in ("lost", "found")] == ["lost", "found"]
+    assert "lost" in play.words

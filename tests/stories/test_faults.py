@@ -27,7 +27,8 @@ ENDS: dict[tuple[str, str], tuple[str, str]] = {
     **{("odometry", kind): NO_POSE for kind in ("frozen", "late")},
     **{("base", kind): BASE_LOST for kind in GONE},
     **{("base", kind): NO_POSE for kind in ("frozen", "late")},
-    **{("base", kind): STUCK for kind in ("blocked", "stuck")},
+    **{("base", kind): STUCK for kind in ("blocked", "stuck", "slip")},
+    ("odometry", "slip"): STUCK,  # the laser sees that it comes no nearer
     ("module", "off"): ("FAILURE", "chain-stopped"),
     ("module", "raise"): ("STOPPED", "module-error"),
     ("module", "hang"): ("STOPPED", "hung"),
@@ -39,8 +40,9 @@ ENDS: dict[tuple[str, str], tuple[str, str]] = {
 LIES = {
     *((device, kind) for device in ("laser", "sonar", "odometry", "imu") for kind in ("garbage", "wrong", "bias", "jump", "noise", "slow", "stuck")),
     ("base", "slow"), ("bumpers", "nan"), ("bumpers", "garbage"), ("wrist", "garbage"), ("wrist", "noise"),
+    ("wrist", "wrong"), ("wrist", "bias"), ("wrist", "jump"),
 }  # fmt: skip
-ASTRAY = ("", "stuck", "timeout", "bumper", "sonar-stale", "laser-stale", "no-pose")
+ASTRAY = ("", "stuck", "timeout", "bumper", "sonar-stale", "laser-stale", "no-pose", "lost", "odometry-frozen")
 EXITS = {"SUCCESS": 0, "FAILURE": 1, "STOPPED": 3}
 
 

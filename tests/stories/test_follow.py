@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from pluto_bt.bench.guides import Guide
 from pluto_bt.scenario import Play, Run
 
 HALL = """<world name="hall" seed="1">
@@ -64,10 +65,32 @@ def is_hidden(robot: tuple[float, float, float], guide: tuple[float, float]) -> 
     return robot[1] + share * (guide[1] - robot[1]) > 1.2
 
 
+@pytest.mark.parametrize(("seed", "others", "platform"), [(104, 0, "pioneer"), (105, 1, "atrv2"), (106, 2, "pioneer")])
+def test_a_guide_nobody_chose_is_followed_round_sharp_turns_between_others_to_where_he_stops(
+    scenario: Play, tmp_path: Any, seed: int, others: int, platform: str
+) -> None:
+    guide = Guide.make(seed, platform, others)
+    world, mission = tmp_path / "hall.xml", tmp_path / "follow.xml"
+    world.write_text(guide.text, encoding="utf-8")
+    body = f'<Follow distance_m="1.5" duration_s="{guide.lasts_s + 6.0:.1f}" max_speed_mps="0.9"/>'
+    mission.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="T">{body}</BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(world), mission=str(mission), max_time_s=120.0)
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert math.dist(run.final_pose[:2], guide.way[-1]) < 2.6, "it stands before the guide, who has stopped"
+    assert guide.near_share([(point.t_s, point.pose) for point in run.track], 4.0) > 0.85
+
+
+def test_one_who_stops_behind_a_corner_is_found_standing_there(follow: Any) -> None:
+    corner = '<polygon id="block">4,1.2 9,1.2 9,6 4,6</polygon>'
+    run = follow(corner + '<actor id="guide" r="0.25" speed="0.75">3,0 10,0 10,2.6</actor>', ports={"d": 26.0})
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert math.dist(run.final_pose[:2], (10.0, 2.6)) < 2.2
+
+
 def test_a_guide_who_vanishes_is_given_up(follow: Any) -> None:
     run = follow(GUIDE, script='<at t="12"><remove id="guide"/></at>')
     assert (run.result, run.reason, run.collisions) == ("FAILURE", "target-lost", 0)
-    assert run.sim_time_s == pytest.approx(18.0, abs=2.0)
+    assert run.sim_time_s == pytest.approx(20.0, abs=2.0)
 
 
 def test_where_nobody_moves_there_is_no_object(follow: Any) -> None:

@@ -13,6 +13,7 @@ from pluto_bt.bench.resume import MISSION, Outcome, outcomes
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.playback import replay_file
 from pluto_bt.result import RunResult
+from pluto_bt.resume import ResumeRequest
 from pluto_bt.runner import Runner, make_runner
 from pluto_bt.system import System
 from pluto_bt.trees.journal import read_journal
@@ -37,8 +38,9 @@ def folder(tmp_path: Path) -> Path:
 def made(folder: Path, policy: str = "resume", start: str | None = None, said: list[str] | None = None, **how: Any) -> Runner:
     request = Request(str(folder / "two.xml"), world="yard.xml", platform="pioneer", start=start, set=how.pop("settings", ()))
     heard = [] if said is None else said
+    asked = ResumeRequest(policy, folder / "journal", start is not None, how.pop("confirm", lambda question: False))
     how = {"max_time_s": 60.0, "on_event": lambda event: heard.append(event.text) if event.code == "say" else None, **how}
-    return make_runner(read_inputs(request), resume=policy, journal=folder / "journal", is_placed=start is not None, **how)
+    return make_runner(read_inputs(request), resume=asked, **how)
 
 
 def cut_off(folder: Path, at_s: float, said: list[str] | None = None, **how: Any) -> None:
@@ -155,7 +157,7 @@ def test_a_side_effect_that_had_begun_when_the_crash_came_is_not_repeated(folder
     keeper = runner.system.executive.keeper
     assert keeper is not None
 
-    def crash(now_s: float, ticks: int) -> None:
+    def crash(now_s: float, ticks: int, line: str) -> None:
         raise CutOffError
 
     keeper.after_tick = crash  # type: ignore[method-assign]
@@ -166,6 +168,19 @@ def test_a_side_effect_that_had_begun_when_the_crash_came_is_not_repeated(folder
     assert [line["kind"] for line in lines] == ["begin", "act"] and lines[1]["keys"] == ["first#1"]
     result, _ = run(folder, said=said)
     assert result.result == "SUCCESS" and said.count("one") <= 1 and said.count("two") == 1
+
+
+def test_a_mission_that_an_operator_ended_is_not_resumed(folder: Path) -> None:
+    """Ended, and killed a moment later."""
+
+    def progress(system: System) -> None:
+        if 2.0 <= system.clock.now_s() < 2.4:
+            system.executive.core.abort("operator")
+
+    result, _ = run(folder, on_progress=progress)
+    assert result.reason == "stopped"
+    past = read_journal(folder / "journal")
+    assert past is not None and not past.has_begun
 
 
 def test_a_run_that_went_on_can_be_replayed(folder: Path) -> None:

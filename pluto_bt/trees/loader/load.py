@@ -24,7 +24,8 @@ from pluto_bt.trees.loader.library import add_library_trees
 from pluto_bt.trees.loader.registry import NodeType, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
-from pluto_bt.trees.mission import Mission, Origin
+from pluto_bt.trees.mission import Mission
+from pluto_bt.trees.origin import Origin
 from pluto_bt.trees.scopes import Board, Topics
 
 
