@@ -23,8 +23,10 @@ from estimation.way_trial import WayTrial
 Array = NDArray[np.float64]
 
 LEAST_BEAMS = 0.75  # of a scan must be numbers
+FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
 GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
+CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
@@ -131,7 +133,7 @@ class MotionCheck:
             self._looked_s = stamp_s
             return
         both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
-        is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
+        is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED) and not (_is_crowded(key) or _is_crowded(scan))
         self._is_elsewhere = is_odd and not self._is_elsewhere
         self._renew(scan)
 
@@ -145,7 +147,7 @@ class MotionCheck:
         best: ScanStep | None = None
         for pose in (motion.pose, (x, y, motion.wheels_rad), IDENTITY):
             guess = between(key.arm, compose(pose, scan.arm))
-            match = match_scans(key.ranges_m, scan.ranges_m, first_rad, step_rad, guess, self._limits.max_range_m)
+            match = match_scans(key.ranges_m, scan.ranges_m, first_rad, step_rad, guess, min(self._limits.max_range_m, FARTHEST_M))
             if best is None:
                 best = match
             elif match.fits > best.fits + 0.1:
@@ -212,6 +214,11 @@ class MotionCheck:
 
     def _renew(self, scan: KeyScan) -> None:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
+
+
+def _is_crowded(scan: KeyScan) -> bool:
+    """True if something near fills much of the scan."""
+    return bool(np.count_nonzero(scan.ranges_m < CROWD_M) > CROWDED * len(scan.ranges_m))
 
 
 def _is_far(pose: Pose2, times: float) -> bool:

@@ -102,7 +102,7 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
             j0 = int(math.floor((math.atan2(qy, qx) - first_rad) / step_rad + 0.5))  # noqa: RUF046  # a kernel's floor gives a float
             if j0 < 1 or j0 > n - 2:
                 continue
-            if 0.0 < before_m[j0] < max_range_m:
+            if NEAR_M < before_m[j0] < max_range_m:
                 looked += 1
                 foreseen_m = math.hypot(qx, qy)
                 longer += 1 if before_m[j0] < foreseen_m - APART_M else 0

@@ -168,6 +168,15 @@ def test_a_leaf_that_the_worlds_script_names_must_be_there(capsys: pytest.Captur
     assert main(["run", "m.xml", "--world", "w.xml"]) == 2
 
 
+@pytest.mark.parametrize("body", ['<NavigateTo goal="gtae"/>', '<PlanPath goal="gtae" path="{p}"/>', '<InsideArea area="lwn"/>'])
+def test_run_refuses_names_that_its_map_does_not_have(body: str, capsys: pytest.CaptureFixture[str]) -> None:
+    found, answer = checked(capsys, body)
+    assert [fault.split()[-1] for fault in found] in (["unknown-goal"], ["unknown-area"])
+    assert main(["run", "m.xml", "--world", "w.xml", "--json"]) == 2
+    refused = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert refused["faults"] == answer["faults"]
+
+
 @pytest.mark.parametrize("name", ["yard.xml", "yard", "t01_say_hello.xml", "t01_say_hello", "atrv2", "car"])
 def test_shipped_files_are_checked_by_name(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", name]) == 0

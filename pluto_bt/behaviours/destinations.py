@@ -72,6 +72,12 @@ class Destination:
         heading = "" if self.theta_deg is None else f";{self.theta_deg!r}"
         return f"{self.x_m!r};{self.y_m!r}{heading}"
 
+    def numbers(self, count: int) -> tuple[float, ...]:
+        """As a port for a point (2) or a pose (3) takes it. Raises ValueError for a name."""
+        if self.name or count not in (2, 3):
+            raise ValueError(f"{self.to_text()} is not {count} numbers")
+        return (self.x_m, self.y_m, self.theta_deg or 0.0)[:count]
+
     def on(self, world: World | None) -> Destination:
         """The place itself, looked up in the map if it is a name. Raises LookupError with a sentence."""
         if not self.name:

@@ -20,8 +20,9 @@ from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
-TRIED_AGAIN: Final = ("odometry-frozen",)  # the stop filter lets held wheels try again every second
-CLEAR_S: Final = 2.0  # so long must they then go without the word before the patience begins anew
+# a sensor on the brink is well for a moment now and then, and held wheels try again every second: these words must stay away for CLEAR_S
+FLICKERING: Final = ("laser-stale", "sonar-stale", "odometry-stale", "odometry-frozen", "no-pose")
+CLEAR_S: Final = 2.0
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
 MOTION_INPUTS: Final = {
@@ -175,10 +176,10 @@ class MotionLeaf(Leaf):
         return self.fail("cancelled", "another command took its place")
 
     def _patience(self, word: str, text: str) -> Status | None:
-        """Let the chain wait for a while with the same word. Where the chain tries again, a moment without the word is no end of it."""
+        """Let the chain wait for a while with the same word. A moment without a word that flickers is no end of it."""
         if word:
             self._word_seen_s = self._last_s
-        elif self._word in TRIED_AGAIN and self._last_s - self._word_seen_s < CLEAR_S:
+        elif self._word in FLICKERING and self._last_s - self._word_seen_s < CLEAR_S:
             return None
         if word != self._word:
             self._word, self._word_since_s = word, self._last_s

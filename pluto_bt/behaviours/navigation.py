@@ -21,6 +21,7 @@ from pluto_bt.skills.planner import STEP_M, Planner
 from pluto_bt.skills.smoothing import resampled, smoothed
 
 Point = tuple[float, float]
+MOST_AVOIDED: Final = 5  # bends too tight for a long robot, before the best way is taken as it is
 SEEN_FOR_PLAN_M: Final = 15.0  # what was seen farther away is not laid over the map: it will be seen again from nearer
 
 
@@ -65,11 +66,24 @@ class Navigation:
         for name, point, cause in (("goal", goal, GOAL_OUTSIDE), ("start", start[:2], START_OUTSIDE)):
             if not (planner.map.frame.has(*point) and self._area.has_point(*point)):
                 return Plan(None, "outside-map", f"the {name} {point[0]:.2f};{point[1]:.2f} is outside the map", cause)
-        planner.map.lay_over(self.seen())
-        points = planner.plan(start[:2], goal, tolerance_m)
+        points = self._roomy(planner, start[:2], goal, tolerance_m)
         if points is None:
             return self._why(planner, start[:2], goal, tolerance_m)
         return Plan(MapPath.along(points, goal_rad, round(now_s * 1e9)))
+
+    def _roomy(self, planner: Planner, start: Point, goal: Point, tolerance_m: float) -> Array | None:
+        """The best way whose bends the robot can take; if there is none after a few tries the best way at all."""
+        seen = self.seen()
+        planner.map.lay_over(seen)
+        best = points = planner.plan(start, goal, tolerance_m)
+        avoided: list[Point] = []
+        while points is not None and len(avoided) < MOST_AVOIDED and (tight := planner.tight_place(points)) is not None:
+            avoided.append(tight)
+            planner.map.lay_over(np.vstack((seen, avoided)))
+            points = planner.plan(start, goal, tolerance_m)
+        if avoided:
+            planner.map.lay_over(seen)
+        return best if points is None or len(avoided) == MOST_AVOIDED else points
 
     def _why(self, planner: Planner, start: Point, goal: Point, tolerance_m: float) -> Plan:
         room_m = float(planner.map.clearances_m(np.array([goal]))[0])

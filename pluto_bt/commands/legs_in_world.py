@@ -16,8 +16,9 @@ from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import At, Put, Remove, Shape, When, World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.skills.map_area import MapArea
-from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.source import Faults, Place
 from pluto_bt.trees.checks.legs import Leg, Point
+from pluto_bt.trees.checks.world_words import goals_of, tell_unknown_goal
 
 HEADINGS = 24  # tried where the robot may stand in any direction
 
@@ -92,13 +93,10 @@ class LegCheck:
     def _point(self, leg: Leg) -> Point | None:
         if not isinstance(leg.goal, str):
             return leg.goal
-        goals = {goal.id: (goal.x_m, goal.y_m) for goal in self._world.goals}
-        if self._world.home is not None:
-            goals["home"] = (self._world.home.x_m, self._world.home.y_m)
-        if leg.goal not in goals:
-            what, known = f'the world has no goal "{leg.goal}"', ", ".join(goals) or "none"
-            self._error(leg, "unknown-goal", what, f"one of: {known}", leg.goal, did_you_mean(leg.goal, goals))
-        return goals.get(leg.goal)
+        goal = goals_of(self._world).get(leg.goal)
+        if goal is None:
+            tell_unknown_goal(leg.place, leg.goal, self._world, self._faults)
+        return goal
 
     def _check_goal(self, leg: Leg, start: Point | None, goal: Point) -> bool:
         """Whether the robot may and can stand at the goal, or as near to it as counts."""

@@ -8,21 +8,20 @@ order still fires. Goto and wall follow give a new order in each cycle, with the
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, split_flags
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, SonarState
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
+from pluto_bt.skills.avoid_senses import AvoidSenses
 from pluto_bt.skills.drive import DriveParameters, drive_limits, is_finite
 from pluto_bt.skills.goto import Goto
 from pluto_bt.skills.heading import regulate
 from pluto_bt.skills.limits import STILL, Limits, Twist, within
 from pluto_bt.skills.outline import Array, Planar, outline_of
 from pluto_bt.skills.protection import Protection
-from pluto_bt.skills.sight import ScanView, Sight
+from pluto_bt.skills.sight import Sight
 from pluto_bt.skills.verdict import ALL_WELL, Verdict, kept
 from pluto_bt.skills.wall_follow import WallFollow, WallStatus
 from pluto_bt.skills.wall_parameters import WallParameters
@@ -32,23 +31,6 @@ __all__ = ["Avoid", "AvoidParameters", "AvoidSenses"]
 SAME_MPS, SAME_RAD = 0.01, 0.004  # smaller changes of a command in force are not worth a new post
 REFRESH_S = 1.0  # a goto or wall follow that has ended renews its zero velocity so often, so that drive does not time out
 LEAST_TURN_RADPS = 1e-3  # "do not turn": as the most turn rate, 0 would mean the platform's
-
-
-class AvoidSenses(NamedTuple):
-    """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
-
-    `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force,
-    `waits_for_walker`: the stop filter holds the robot back because of somebody; `no_pose`: why there is no `pose`.
-    """
-
-    pose: Planar | None
-    dead: Planar | None
-    raw_heading_rad: float | None
-    twist: Twist = STILL
-    view: ScanView | None = None
-    sonar: SonarState | None = None
-    waits_for_walker: bool = False
-    no_pose: Verdict = Verdict(reason=reasons.NO_POSE, text="waits until it is known where the robot is")
 
 
 class Avoid:

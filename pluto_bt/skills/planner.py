@@ -15,6 +15,7 @@ from pluto_bt.skills.way_kernels import search
 Point = tuple[float, float]
 RELAXED_M = 0.8  # so near to its start and its goal a way may be tighter
 REACH_CELLS = 1.0
+CORNER_GAP_M = 0.1  # left beside the corners of a robot in a bend
 TURNING_GAP_M = 0.08  # a way with so much around a robot that turns on the spot costs no more: doors are then approached straight
 STEP_M = 0.1  # between the points of a way
 GREED = 1.08  # steps go along the grid and its diagonals, which is up to 8 % longer than straight
@@ -28,6 +29,7 @@ class Planner:
         self.map = plan_map
         cell_m, count = plan_map.frame.cell_m, plan_map.cells.size
         self._side_m = outline.side_m
+        self._corners_m = [(x, y) for x in (outline.front_m, -outline.back_m) for y in (outline.side_m, -outline.side_m)]
         self.least_m = outline.side_m + parameters.gap_m  # from the middle of the robot to what stands
         room_m = max(outline.side_m + parameters.room_m, outline.reach_m + TURNING_GAP_M, self.least_m + 0.05)
         self._half = room_m / cell_m
@@ -83,9 +85,16 @@ class Planner:
         straight = pulled(resampled(rough, STEP_M), self.map.clearances_m, wide_m)
         return smoothed(resampled(straight, STEP_M), self.map.clearances_m, wide_m)
 
-    def is_free(self, points: Array) -> bool:
-        """True if a way still has the room it needs, as far as the map and what lies over it tell."""
-        return bool((self.map.clearances_m(points) > 0.8 * self.least_m).all()) if len(points) else True
+    def tight_place(self, points: Array) -> Point | None:
+        """The first place of a way (n, 2) where the corners of a robot that drives along it come too near to something, its start and
+        goal left out: there its bend is too tight for a long robot."""
+        headings = np.arctan2(*np.gradient(points, axis=0).T[::-1])
+        c, s = np.cos(headings), np.sin(headings)
+        corners = (points + np.column_stack((c * x - s * y, s * x + c * y)) for x, y in self._corners_m)
+        room_m = np.min([self.map.clearances_m(corner) for corner in corners], axis=0)
+        skipped = math.ceil(RELAXED_M / STEP_M)
+        tight = np.flatnonzero(room_m[skipped:-skipped] < CORNER_GAP_M)
+        return None if not len(tight) else (float(points[skipped + tight[0], 0]), float(points[skipped + tight[0], 1]))
 
     def length_m(self, points: Array) -> float:
         """From the first point to the last."""

@@ -70,6 +70,9 @@ def _numbers(items: tuple[Kind, ...]) -> Kind:
         return tuple(item.parse(part) for item, part in zip(items, parts, strict=True))
 
     def cast(value: Any) -> tuple[Any, ...]:
+        numbers = getattr(value, "numbers", None)  # a value of a class that can be written as so many
+        if callable(numbers):
+            value = numbers(count)
         if not isinstance(value, (list, tuple)) or len(value) != count:
             raise ValueError(f"expected {form}")
         return tuple(item.cast(one) for item, one in zip(items, value, strict=True))

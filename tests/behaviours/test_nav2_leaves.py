@@ -174,12 +174,22 @@ def test_goal_updated_begins_anew_when_it_is_reset(run: Any) -> None:
         assert mission.statuses()["asked"] == "FAILURE", "its parent resets it in each tick"
 
 
-def test_goal_updated_where_nobody_resets_it(stage: Any, run: Any) -> None:
-    xml = "<PipelineSequence><GoalUpdated _onFailure='f+=1' _onSuccess='s+=1' _post='n+=1'/><Sleep msec='99999'/></PipelineSequence>"
-    mission = run(xml, goal="1;1", f=0, s=0, n=0)
-    assert mission.tick_once() == "FAILURE", "a PipelineSequence fails with its child, and so resets it"
+def test_goal_updated_where_nobody_resets_it(run: Any) -> None:
+    mission = run("<WhileDoElse><GoalUpdated/><AlwaysSuccess/><Sleep msec='99999'/></WhileDoElse>", goal="1;1")
+    assert [mission.tick_once(), mission.tick_once()] == ["RUNNING", "RUNNING"]
     mission.blackboard["goal"] = "2;2"
-    assert (mission.tick_once(), mission.blackboard["f"], mission.blackboard["s"]) == ("FAILURE", 2, 0)
+    assert mission.tick_once() == "SUCCESS"
+
+
+def test_time_expired_and_distance_traveled_where_nobody_resets_them(stage: Any, run: Any) -> None:
+    for condition, far in (('<TimeExpired seconds="0.5"/>', False), ('<DistanceTraveled distance="0.4"/>', True)):
+        mission = run(f"<WhileDoElse>{condition}<AlwaysSuccess/><Sleep msec='99999'/></WhileDoElse>")
+        answers = []
+        for tick in range(6):
+            stage.robot.is_at(3.0 + (0.1 * tick if far else 0.0), 2.0)
+            answers.append(mission.tick_once()[0])
+            stage.clock.advance(0.01 if far else 0.1)
+        assert "".join(answers) in ("RRRRRS", "RRRRSR")
 
 
 def test_globally_updated_goal_keeps_its_own_memory(run: Any) -> None:
@@ -385,6 +395,13 @@ def test_follow_path_steers_along_the_path_and_tells_when_it_is_stuck(stage: Any
     stage.robot.is_at(3.0, 6.1)
     assert stage.tick(mission) == "FAILURE"
     assert (mission.blackboard["why"], mission.blackboard["e"]) == ("stuck", 105)
+
+
+def test_a_pose_from_one_leaf_is_a_goal_for_another_whatever_form_it_wants(run: Any, stage: Any) -> None:
+    for order in ('<GetCurrentPose current_pose="{p}"/><GoTo goal="{p}"/>', '<GoTo goal="{p}" _skipIf="true"/><GetCurrentPose current_pose="{p}"/>'):
+        mission = run(f'<Sequence>{order}<IsAt goal="{{p}}"/><GoalReached goal="{{p}}"/></Sequence>')
+        assert mission.tick_once() in ("RUNNING", "SUCCESS")
+    assert stage.robot.commands[-1].position == (3.0, 2.0)
 
 
 def test_selectors_listen_to_entries_of_the_main_tree(run: Any) -> None:

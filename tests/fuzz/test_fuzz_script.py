@@ -44,7 +44,7 @@ def test_any_text_is_a_program_or_a_fault_with_a_place(text: str) -> None:
     except ScriptSyntaxError as error:
         assert 0 <= error.position <= len(text) and error.message
         return
-    uses = names_used(program)
+    uses = names_used(text)
     assert all(text[use.position :].startswith(use.name) for use in uses)
     with contextlib.suppress(ScriptError, PortProblem):
         value = program.run(Env(scope(), {"RED": 1}))
@@ -64,4 +64,4 @@ def test_numbers_come_out_as_python_reckons_them(rest: list[tuple[str, int]], fi
 @pytest.mark.parametrize("text", ["(" * 5000, "-" * 5000 + "1", "a := " * 5000 + "1", "1 ? " * 5000, "!(" * 3000, "1;" * 20_000, "x" * 90_000])
 def test_long_and_deep_scripts_end(text: str) -> None:
     with contextlib.suppress(ScriptSyntaxError):
-        names_used(parse_script(text))
+        names_used(text)

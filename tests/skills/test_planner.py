@@ -167,3 +167,19 @@ def test_a_frame_leads_there_and_back() -> None:
     points = np.random.default_rng(0).uniform(-5.0, 5.0, (20, 2))
     assert frame.to_map(frame.to_cells(points)) == pytest.approx(points)
     assert frame.has(3.0, -1.9) is bool(frame.to_cells(np.array([(3.0, -1.9)])).min() >= 0.0)
+
+
+def test_a_bend_that_a_long_robot_cannot_take_is_told() -> None:
+    planner = planner_on(walled(200, [(0, 0, 90, 200), (104, 0, 96, 90), (104, 104, 96, 96)]))  # two corridors of 1.4 m that meet
+    frame = planner.map.frame
+    a, b = (tuple(frame.to_map(np.array([cell]))[0]) for cell in ((97.0, 20.0), (180.0, 97.0)))
+    way = planner.plan(a, b, 0.3)
+    assert way is not None and planner.tight_place(way) is None
+    long = ((1.3, 0.3), (-1.3, 0.3), (-1.3, -0.3), (1.3, -0.3))
+    planner = Planner(planner.map, outline_of(long), PlanParameters())
+    way = planner.plan(a, b, 0.3)
+    assert way is not None
+    place = planner.tight_place(way)
+    assert place is not None
+    corner = frame.to_map(np.array([(97.0, 97.0)]))[0]
+    assert math.dist(place, corner) < 2.5

@@ -68,7 +68,7 @@ def test_moveto_drives_round_a_kerb_that_a_level_scan_passes_over(tell: Any) -> 
 
 
 def test_moveto_gets_past_people_who_do_not_yield_and_takes_no_trail_of_theirs_for_a_wall(tell: Any) -> None:
-    people = '<actor id="one" r="0.25" speed="0.8" loop="true">10,1 10,7</actor><actor id="other" r="0.25" speed="1" loop="true">14,7 16,1</actor>'
+    people = '<actor id="one" r="0.25" speed="1" loop="true">20,3 5,5</actor><actor id="other" r="0.25" speed="0.5" loop="true">12,2 16,6</actor>'
     run = tell('<MoveTo goal="22;4" timeout_s="600"/>', lane(people), max_time_s=700.0)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
 

@@ -349,3 +349,12 @@ def test_all_faults_are_told_though_an_included_file_is_missing() -> None:
 </Sequence></BehaviorTree></root>''')
     assert [fault.code for fault in check_mission(text)] == ["no-file", "unknown-node", "unset-key", "bad-literal", "threshold"]
     assert check_mission(text.replace('execute="A"', 'execute="FromThere"'))[0].code == "no-file"
+
+
+@pytest.mark.parametrize(("always", "faults"), [
+    ("@Localization_Pose_x &lt; 30 &amp;&amp; n &lt; 3", []),
+    ("@Localization_Pose_q &lt; 30", ["4:28 error unknown-topic"]),
+    ("m &lt; 30", ["4:28 error unset-key"]),
+])  # fmt: skip
+def test_what_a_contract_looks_at_must_be_there_some_time(always: str, faults: list[str]) -> None:
+    assert told('<Script code="n := 1"/>', f'<Contract name="c" always="{always}"/>') == faults

@@ -72,4 +72,7 @@ def _check_whole(reading: Reading, root: Plan) -> None:
     check_words(nodes, report)
     model = reading.files.subtree_models.get(reading.main.tree_id) if reading.main is not None else None
     inputs = {name: port for name, port in model.ports.items() if port.direction != "out"} if model is not None else {}
-    Flow(reading.board, inputs, ends, report).run(nodes)
+    flow = Flow(reading.board, inputs, ends, report)
+    flow.run(nodes)
+    looks = [element.attributes[name] for element in reading.files.contracts for name in ("when", "always") if element.get(name)]
+    flow.run_beside(looks)

@@ -12,7 +12,7 @@ from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.scopes import Scope
-from pluto_bt.trees.script import ScriptSyntaxError, parse_script
+from pluto_bt.trees.script import ScriptSyntaxError
 from pluto_bt.trees.script.names import How, names_used
 from pluto_bt.trees.values import SCRIPT
 
@@ -73,15 +73,16 @@ def uses_after(plan: Plan) -> list[Use]:
 
 def _conditions(plan: Plan, names: tuple[str, ...]) -> list[Use]:
     attributes = plan.element.attributes
-    return [use for name in names if name in attributes for use in _script_uses(attributes[name])]
+    return [use for name in names if name in attributes for use in script_uses(attributes[name])]
 
 
-def _script_uses(attribute: XmlAttribute) -> Iterator[Use]:
+def script_uses(attribute: XmlAttribute) -> Iterator[Use]:
+    """What a script reads and writes."""
     try:
-        program = parse_script(attribute.value)
+        uses = names_used(attribute.value)
     except ScriptSyntaxError:
         return  # told by the static check
-    for use in names_used(program):
+    for use in uses:
         yield Use(use.name, attribute, use.position, use.how, True, True)
 
 
@@ -89,7 +90,7 @@ def _port_uses(plan: Plan, port: PortModel, attribute: XmlAttribute) -> list[Use
     assert plan.node_type is not None  # the caller looked
     key = key_of(port.name, attribute.value)
     if port.kind is SCRIPT and key is None:
-        return list(_script_uses(attribute))
+        return list(script_uses(attribute))
     is_setter = plan.node_type.builtin and port.name == "output_key"
     if is_setter and key is None:
         return [Use(attribute.value, attribute, 0, "write", False, False)]

@@ -6,12 +6,12 @@ node may have written in an earlier round, so only reads that the very first rou
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Final
 
 from pluto_bt.source import Place, did_you_mean
-from pluto_bt.source.xml_reader import XmlElement
-from pluto_bt.trees.checks.entries import Home, Use, home_of, uses_after, uses_before
+from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
+from pluto_bt.trees.checks.entries import Home, Use, home_of, script_uses, uses_after, uses_before
 from pluto_bt.trees.checks.outcomes import GUARDS, Ends, S
 from pluto_bt.trees.engine.conditions import CONDITIONS
 from pluto_bt.trees.loader.expand import Plan
@@ -51,6 +51,14 @@ class Flow:
                     self._writers.setdefault(self._home(plan.scope, use.key), use.place)
         self._visit(nodes[0], certain=True)
 
+    def run_beside(self, scripts: Iterable[XmlAttribute]) -> None:
+        """Check scripts that look at the root entries all the time, after `run`: what they name must be written some time."""
+        root = self._board.root
+        for use in (use for attribute in scripts for use in script_uses(attribute)):
+            home = self._home(root, use.key)
+            if home not in self._writers and not self._is_given(root, use.key):
+                self._tell(root, use, home)
+
     def _visit(self, plan: Plan, certain: bool) -> None:
         certain = certain and not any(name in plan.element.attributes for name in GUARDS)
         before, after = self._uses[id(plan)]
@@ -71,7 +79,7 @@ class Flow:
             is_written = home in self._written or (home in self._in_rounds and not certain)
             is_there = use.how == "change" and plan.scope.find(use.key) is not None  # a port has declared it
             if use.how != "write" and not is_written and not is_there and not self._is_given(plan.scope, use.key):
-                self._tell(plan, use, home)
+                self._tell(plan.scope, use, home)
             if use.how != "read":
                 self._written.add(home)
 
@@ -87,7 +95,7 @@ class Flow:
             return True
         return owner is self._board.root and (name in self._inputs or (key.startswith("@") and self._board.topics is None))
 
-    def _tell(self, plan: Plan, use: Use, home: Home) -> None:
+    def _tell(self, scope: Scope, use: Use, home: Home) -> None:
         place = use.place
         where = place.file, place.line, place.column
         if where in self._told:
@@ -103,9 +111,9 @@ class Flow:
         elif use.how == "change":
             what = f'entry "{use.key}" does not exist, so nothing can be assigned to it'
         report = self._report.late if use.fails and self._is_closed else self._report.warning
-        report(place, code, what, expected="an entry that has a value", found=found, mend=self._mend(plan, use, later is not None))
+        report(place, code, what, expected="an entry that has a value", found=found, mend=self._mend(scope, use, later is not None))
 
-    def _mend(self, plan: Plan, use: Use, is_late: bool) -> str:
+    def _mend(self, scope: Scope, use: Use, is_late: bool) -> str:
         if use.how == "change":
             return "':=' creates the entry"
         if is_late:
@@ -113,11 +121,11 @@ class Flow:
         bare = use.key.removeprefix("@")
         if use.key.startswith("@"):
             return did_you_mean(bare, self._board.topic_names).replace('"', '"@', 1)
-        parent = plan.scope.parent
+        parent = scope.parent
         if parent is not None and (self._is_given(parent, bare) or self._home(parent, bare) in self._writers):
             return f'map it on the <SubTree> tag: {bare}="{{{bare}}}"'
-        owner = id(home_of(plan.scope, use.key)[0])
-        near = did_you_mean(bare, [name for scope, name in self._writers if scope == owner] + [*self._inputs])
+        owner = id(home_of(scope, use.key)[0])
+        near = did_you_mean(bare, [name for home, name in self._writers if home == owner] + [*self._inputs])
         if near:
             return near
         if parent is not None:

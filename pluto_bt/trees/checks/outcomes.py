@@ -43,7 +43,7 @@ def constant_truth(script: str) -> bool | None:
     """What a script without names always says; None if it depends on entries, or cannot be run."""
     try:
         program = parse_script(script)
-        if not program.statements or names_used(program):
+        if not program.statements or names_used(script):
             return None
         return truth(program.run(Env(None, {})), "it")  # type: ignore[arg-type]  # without names no scope is looked at
     except (ScriptSyntaxError, ScriptError):

@@ -1,30 +1,60 @@
-"""What a mission and a world say of one another: named areas, and leaves that the world's script lets fail."""
+"""What a mission and a world say of one another: named areas and goals, and leaves that the world's script lets fail."""
 
 from __future__ import annotations
 
+from pluto_bt.behaviours.destinations import Destination, Destinations
 from pluto_bt.maps.world import FaultAction, World
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
+from pluto_bt.source.xml_reader import XmlAttribute
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
+from pluto_bt.trees.ports import PortModel
+from pluto_bt.trees.python_types import kind_of_type
 
 
 def check_world_words(root: Plan, world: World, map_: World) -> tuple[Fault, ...]:
-    """Faults of names: areas of `map_` that the mission asks for, leaves of the mission that `world` names."""
+    """Faults of names: areas and goals of `map_` that the mission asks for, leaves of the mission that `world` names."""
     faults, nodes = Faults(), root.walk()
-    areas = [area.id for area in map_.areas if area.id]
     told: set[int] = set()
     for plan in nodes:
         ports = plan.node_type.ports.values() if plan.node_type is not None else ()
-        for name in (port.name for port in ports if port.names == "area"):
-            attribute = plan.element.attributes.get(name)
-            if attribute is not None and key_of(name, attribute.value) is None and attribute.value not in areas and id(attribute) not in told:
+        for port in ports:
+            attribute = plan.element.attributes.get(port.name)
+            if attribute is not None and key_of(port.name, attribute.value) is None and id(attribute) not in told:
                 told.add(id(attribute))
-                what = f'the map has no area "{attribute.value}"'
-                known = "one of: " + (", ".join(areas) or "none")
-                mend = did_you_mean(attribute.value, areas)
-                faults.error(attribute.value_place, "unknown-area", what, expected=known, found=attribute.value, mend=mend)
+                _check_literal(attribute, port, map_, faults)
     _check_leaves(nodes, world, faults)
     return faults.in_order()
+
+
+def goals_of(map_: World) -> dict[str, tuple[float, float]]:
+    """The places of a map by name, x m, y m; `home` is one if the map has it."""
+    goals = {goal.id: (goal.x_m, goal.y_m) for goal in map_.goals}
+    return goals if map_.home is None else goals | {"home": (map_.home.x_m, map_.home.y_m)}
+
+
+def tell_unknown_goal(place: Place, name: str, map_: World, faults: Faults) -> None:
+    """The map has no goal of that name."""
+    goals = goals_of(map_)
+    known = "one of: " + (", ".join(goals) or "none")
+    faults.error(place, "unknown-goal", f'the map has no goal "{name}"', expected=known, found=name, mend=did_you_mean(name, goals))
+
+
+def _check_literal(attribute: XmlAttribute, port: PortModel, map_: World, faults: Faults) -> None:
+    if port.names == "area":
+        areas = [area.id for area in map_.areas if area.id]
+        if attribute.value not in areas:
+            what, known = f'the map has no area "{attribute.value}"', "one of: " + (", ".join(areas) or "none")
+            mend = did_you_mean(attribute.value, areas)
+            faults.error(attribute.value_place, "unknown-area", what, expected=known, found=attribute.value, mend=mend)
+    elif port.kind in (kind_of_type(Destination), kind_of_type(Destinations)):
+        try:
+            value = port.kind.parse(attribute.value)
+        except ValueError:
+            return  # told by the static check
+        for one in value if isinstance(value, Destinations) else [value]:
+            if one.name and one.name not in goals_of(map_):
+                tell_unknown_goal(attribute.value_place, one.name, map_, faults)
 
 
 def _check_leaves(nodes: list[Plan], world: World, faults: Faults) -> None:

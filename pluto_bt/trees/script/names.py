@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import Literal, NamedTuple
 
-from pluto_bt.trees.script.parser import Program
+from pluto_bt.trees.script.parser import parse_script
 from pluto_bt.trees.script.terms import Assignment, Chain, Choice, Comparison, Name, Term, Unary
 
 How = Literal["read", "write", "change"]
@@ -21,9 +21,9 @@ class NameUse(NamedTuple):
 
 
 @lru_cache(maxsize=4096)
-def names_used(program: Program) -> tuple[NameUse, ...]:
-    """All uses; both branches of `?:` count as run."""
-    return tuple(use for statement in program.statements for use in _uses(statement))
+def names_used(text: str) -> tuple[NameUse, ...]:
+    """All uses in a script; both branches of `?:` count as run. Raises ScriptSyntaxError."""
+    return tuple(use for statement in parse_script(text).statements for use in _uses(statement))
 
 
 def _uses(term: Term) -> Iterator[NameUse]:
