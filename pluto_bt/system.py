@@ -57,7 +57,7 @@ MODULES: tuple[Module, ...] = (
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
-    Module("groot",     "pluto_bt.modules.groot:Groot",           0.0,    "gateway",    needs=("executive",), device="groot",               budget_ms=1.0),
+    Module("groot",     "pluto_bt.modules.groot:Groot",           1.0,    "gateway",    needs=("executive",), device="groot",               budget_ms=1.0),
     Module("recorder",  "pluto_bt.modules.recorder:Recorder",     0.5,    "recorder",   needs=("executive",), device="recorder",            budget_ms=20.0),
 )
 # fmt: on

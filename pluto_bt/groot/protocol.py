@@ -34,6 +34,7 @@ class Desk:
 
     def __init__(self, now_ns: Callable[[], int], calendar_us: Callable[[], int]) -> None:
         self.shown: Shown | None = None
+        self.answered = 0  # requests so far
         self._now_ns, self._calendar_us = now_ns, calendar_us
         self._xml: tuple[Shown, bytes] | None = None
         self._types: dict[bytes, Callable[[list[bytes]], Payload]] = {
@@ -44,6 +45,7 @@ class Desk:
 
     def answer(self, parts: list[bytes]) -> list[bytes]:
         """The reply to one request; never raises, whatever was sent."""
+        self.answered += 1
         try:
             return self._answer(parts)
         except GrootError as error:

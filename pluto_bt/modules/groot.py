@@ -15,7 +15,7 @@ from pluto_bt.trees.executive import Activity
 
 
 class Groot:
-    """Never steps: the executive hands over statuses, a thread of its own serves them."""
+    """The executive hands over statuses, a thread of its own serves them; a step only tells operators that somebody looks on."""
 
     def __init__(self, context: Context) -> None:
         """Raises: InputError if the ports cannot be had."""
@@ -24,6 +24,7 @@ class Groot:
         self._context = context
         self._desk = Desk(context.clock.now_ns, lambda: calendar_ns() // 1000)
         self._seen: tuple[int, str] | None = None
+        self._is_told = False
         self._server: Server | None = Server(self._desk, asked.host, asked.port)
         self.address = Address(self._server.host, self._server.port)
 
@@ -37,7 +38,10 @@ class Groot:
         self._context.say("info", "groot", "groot", f"Groot2 can connect to {self.address}")
 
     def step(self, now_s: float) -> None:
-        """Nothing is left to do."""
+        """Say so when the first client has asked."""
+        if self._desk.answered and not self._is_told:
+            self._is_told = True
+            self._context.say("info", "groot-client", "groot", "a monitor looks on")
 
     def stop(self) -> None:
         """Free the ports."""

@@ -83,6 +83,7 @@ def test_a_client_follows_a_run_in_threads(play: Any) -> None:
         assert len(first) == 16 and client.ask(b"D").tree_id == first
     while not done:
         pass_time(port)
+    assert done[0].said("groot-client") == ["a monitor looks on"]
     assert done[0].reason == "max-time" and done[0].runner.result.collisions == 0
 
 
