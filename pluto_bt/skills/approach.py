@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from itertools import pairwise
 
 import numpy as np
 
+from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.sonar import Mask, SonarRing
 
@@ -42,32 +42,54 @@ class Approach:
 
     def _steady(self, near: Mask) -> Array:
         """Those of the near ones that came evenly, own motion taken off."""
-        heard = np.array([ranges_m for ranges_m, _, _ in self._rounds])
-        places = [self._apexes(robot) for _, robot, _ in self._rounds]
-        own_m = np.array([self._own_m(*two) for two in pairwise(places)])
-        came_m = heard[:-1] - heard[1:] - own_m
-        total_m = came_m.sum(axis=0)
-        swept_m = np.minimum(heard[-1], HEAR_M) * np.abs(places[-1][2] - places[0][2])
-        found = near & (total_m > NEARER_M) & (came_m.max(axis=0) < EVENLY * total_m) & (swept_m < TURNING_M)
-        x, y, theta = places[-1]
-        ranges_m = heard[-1]
-        unsure_m = ranges_m * math.sin(self._ring.half_cone_rad)
-        return np.column_stack((x + ranges_m * np.cos(theta), y + ranges_m * np.sin(theta), unsure_m))[np.flatnonzero(found)]
+        heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
+        places = np.array([robot for _, robot, _ in self._rounds])
+        axes, half_rad = self._ring.axes, self._ring.half_cone_rad
+        came = came_evenly(heard_m, places, axes, near, half_rad)
+        if not came.any():
+            return NOTHING
+        x, y, theta = places[-1].tolist()
+        c, s, which, ranges_m = math.cos(theta), math.sin(theta), np.flatnonzero(came), heard_m[-1][came]
+        axis_rad = theta + axes[which, 2]
+        apex_x, apex_y = x + c * axes[which, 0] - s * axes[which, 1], y + s * axes[which, 0] + c * axes[which, 1]
+        ends = (apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad))
+        return np.column_stack(ends)
 
-    def _apexes(self, robot: Planar) -> Array:
-        """(3, k) x, y, theta of the transducers."""
-        axes = self._ring.axes
-        c, s = math.cos(robot[2]), math.sin(robot[2])
-        return np.array((robot[0] + c * axes[:, 0] - s * axes[:, 1], robot[1] + s * axes[:, 0] + c * axes[:, 1], robot[2] + axes[:, 2]))
 
-    def _own_m(self, before: Array, after: Array) -> Array:
-        """(k,) how much nearer what stands can have come by the robot's own step; infinite where that cannot be said."""
-        dx, dy = after[0] - before[0], after[1] - before[1]
-        way_m = np.hypot(dx, dy)
-        aside_rad = np.abs(np.remainder(np.arctan2(dy, dx) - after[2] + np.pi, 2.0 * np.pi) - np.pi)
-        edge_rad = np.minimum(aside_rad + self._ring.half_cone_rad, WIDEST_RAD)
-        known: Array = np.where((edge_rad < WIDEST_RAD) | (way_m < STANDING_M / ROUNDS), SLANT * way_m / np.cos(edge_rad), np.inf)
-        return known
+@kernel
+def came_evenly(heard_m: Array, places: Array, axes: Array, near: Mask, half_cone_rad: float) -> Mask:
+    """(k,) which of the `near` transducers hear something come that the robot's own motion does not explain.
+
+    Args:
+        heard_m: (rounds, k). places: (rounds, 3) of the robot. axes: (k, 3) of the transducers, robot frame.
+    """
+    rounds, count = heard_m.shape
+    came = np.zeros(count, dtype=np.bool_)
+    swept_rad = abs(places[rounds - 1, 2] - places[0, 2])
+    for k in range(count):
+        if not near[k]:
+            continue
+        total_m, most_m = 0.0, -math.inf
+        for r in range(1, rounds):
+            step_m = heard_m[r - 1, k] - heard_m[r, k] - own_m(places, axes, r, k, half_cone_rad)
+            total_m, most_m = total_m + step_m, max(most_m, step_m)
+        sweeps_m = min(heard_m[rounds - 1, k], HEAR_M) * swept_rad
+        came[k] = total_m > NEARER_M and most_m < EVENLY * total_m and sweeps_m < TURNING_M
+    return came
+
+
+@inline_kernel
+def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> float:
+    """How much nearer what stands can have come to a transducer by the robot's own step to round r; infinite where that cannot be said."""
+    c0, s0, c1, s1 = math.cos(places[r - 1, 2]), math.sin(places[r - 1, 2]), math.cos(places[r, 2]), math.sin(places[r, 2])
+    dx = places[r, 0] - places[r - 1, 0] + (c1 - c0) * axes[k, 0] - (s1 - s0) * axes[k, 1]
+    dy = places[r, 1] - places[r - 1, 1] + (s1 - s0) * axes[k, 0] + (c1 - c0) * axes[k, 1]
+    way_m = math.hypot(dx, dy)
+    off_rad = math.atan2(dy, dx) - places[r, 2] - axes[k, 2]
+    aside_rad = abs(math.atan2(math.sin(off_rad), math.cos(off_rad)))
+    edge_rad = min(aside_rad + half_cone_rad, WIDEST_RAD)
+    known = edge_rad < WIDEST_RAD or way_m < STANDING_M / ROUNDS
+    return SLANT * way_m / math.cos(edge_rad) if known else math.inf
 
 
 NOTHING: Array = np.zeros((0, 3))

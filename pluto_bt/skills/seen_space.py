@@ -24,6 +24,8 @@ APEX_X, APEX_Y, AXIS, ECHO, CLEAR_TO, LEAVES = range(6)  # columns of the cones
 DEAF_M = 0.02
 ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes get lost
 
+NOWHERE: Array = np.zeros((0, 2))
+
 
 class SeenSpace:
     """Cells as far as `reach_m` to each side; `fleeting_s` is that of `hear_cones`."""
@@ -42,7 +44,7 @@ class SeenSpace:
         self._middle: tuple[int, int] | None = None
         self._last_ranges_m: Array | None = None
         self._rounds: list[Array] = []
-        self._touching: Array = np.zeros((0, 2))  # robot frame
+        self._touching: Array = NOWHERE  # robot frame
         self._see, self._hear, self._stand = see_beams.compiled(), hear_cones.compiled(), stand.compiled()
 
     @property
@@ -120,13 +122,16 @@ class SeenSpace:
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
         half_cone_rad = math.radians(sonar.cone_deg) / 2.0
         self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s)
-        touching = np.flatnonzero(cones[:, ECHO] == TOUCHING_M)
-        x, y, theta = axes[touching].T
-        self._touching = np.column_stack((x + leaves_m[touching] * np.cos(theta), y + leaves_m[touching] * np.sin(theta)))
+        touching = cones[:, ECHO] == TOUCHING_M
+        if touching.any():
+            x, y, theta = axes[touching].T
+            self._touching = np.column_stack((x + leaves_m[touching] * np.cos(theta), y + leaves_m[touching] * np.sin(theta)))
+        else:
+            self._touching = NOWHERE
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
-        self._rounds, self._touching = [], np.zeros((0, 2))
+        self._rounds, self._touching = [], NOWHERE
 
     def stand(self, robot: Planar, grown_m: float, now_s: float, obstacles_since_s: float, window_m: float) -> None:
         """The robot stands here: its place is free. Gather the points within `window_m` into `points`."""
