@@ -211,5 +211,6 @@ class Blackboard:
         if kept is not None:
             kept.append(sample)
 
+
 def _stamp(sample: Sample) -> float:
     return sample.value.stamp_s
