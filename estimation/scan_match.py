@@ -78,9 +78,10 @@ def match_scans(before_m: Array, now_m: Array, first_rad: float, step_rad: float
 def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max_range_m: float, out: Array) -> None:
     """Fill `out`: the pose that it holds is the guess, and is moved; behind it come the figures of `ScanStep`."""
     n = before_m.shape[0]
-    px, py = np.zeros(n), np.zeros(n)
+    px, py, now_x, now_y = np.zeros(n), np.zeros(n), np.zeros(n), np.zeros(n)
     for i in range(n):
-        px[i], py[i] = before_m[i] * math.cos(first_rad + i * step_rad), before_m[i] * math.sin(first_rad + i * step_rad)
+        c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
+        px[i], py[i], now_x[i], now_y[i] = before_m[i] * c, before_m[i] * s, now_m[i] * c, now_m[i] * s
     gx, gy, gt = out[0], out[1], out[2]
     x, y, theta, reach_m = gx, gy, gt, REACH_M
     is_settled = False
@@ -95,8 +96,7 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
             r = now_m[i]
             if not NEAR_M < r < max_range_m:
                 continue
-            beam_rad = first_rad + i * step_rad
-            rx, ry = r * math.cos(beam_rad), r * math.sin(beam_rad)
+            rx, ry = now_x[i], now_y[i]
             dx, dy = c * rx - s * ry, s * rx + c * ry
             qx, qy = x + dx, y + dy
             j0 = int(math.floor((math.atan2(qy, qx) - first_rad) / step_rad + 0.5))  # noqa: RUF046  # a kernel's floor gives a float

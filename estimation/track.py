@@ -52,12 +52,13 @@ class Track:
         if stamp_s <= last.stamp_s:
             raise ValueError(f"step at {stamp_s} s, but the track is at {last.stamp_s} s")
         pose_odom = compose(last.pose_odom, step)
-        pose_map = compose(self.adjustment, pose_odom)
+        pose_map = pose_odom if self.adjustment is IDENTITY else compose(self.adjustment, pose_odom)
         now = Moment(stamp_s, pose_odom, pose_map, last.covariance_odom, last.covariance_map, tilt)
         now.distance_var_m2, now.turn_var_rad2 = distance_var_m2, turn_var_rad2
         if distance_var_m2 or turn_var_rad2 or step != IDENTITY:
             now.covariance_odom = _next_covariance(last.covariance_odom, last.pose_odom, pose_odom, now)
-            now.covariance_map = _next_covariance(last.covariance_map, last.pose_map, pose_map, now)
+            is_one = pose_map is pose_odom and last.covariance_map is last.covariance_odom  # nobody has adjusted anything yet
+            now.covariance_map = now.covariance_odom if is_one else _next_covariance(last.covariance_map, last.pose_map, pose_map, now)
         self._moments.append(now)
         self.now = now
         return now

@@ -114,13 +114,10 @@ class Obstacles:
         if not len(old):
             return
         p = self.parameters
-        dx, dy = old[:, X] - laser[0], old[:, Y] - laser[1]
-        c, s = math.cos(laser[2]), math.sin(laser[2])
-        bearing = np.arctan2(c * dy - s * dx, c * dx + s * dy)
-        last_rad = scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
-        outside = (bearing < scan.angle_min_rad + FIELD_EDGE_RAD) | (bearing > last_rad - FIELD_EDGE_RAD)
-        memory_s = np.where(old[:, MARGIN] == p.margin_m, p.memory_s, p.walker_memory_s)  # who walks may be seen before his pace is known
-        self._kept = old[outside & (old[:, SINCE] > now_s - memory_s) & (np.hypot(dx, dy) < self.reach_m + 1.0)]
+        first_rad, last_rad = scan.angle_min_rad, scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
+        field = (first_rad + FIELD_EDGE_RAD, last_rad - FIELD_EDGE_RAD)
+        oldest = (p.margin_m, now_s - p.memory_s, now_s - p.walker_memory_s)
+        self._kept = _outside_the_field(old, laser, field, oldest, self.reach_m + 1.0)
 
 
 def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:
@@ -128,6 +125,27 @@ def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:
     c, s = math.cos(frame[2]), math.sin(frame[2])
     out[:, X] = frame[0] + c * x - s * y
     out[:, Y] = frame[1] + s * x + c * y
+
+
+@kernel
+def _outside_the_field(
+    points: Array, laser: Planar, field_rad: tuple[float, float], oldest: tuple[float, float, float], reach_m: float
+) -> Array:
+    """The points (rows of the memory) that a laser does not look at, are near enough, and young enough.
+
+    Args:
+        field_rad: the first and the last bearing of the field of view.
+        oldest: margin of what stands, s since when such counts, and s since when others do: who walks may be seen before his pace is known.
+    """
+    kept = np.zeros(points.shape[0], dtype=np.bool_)
+    c, s = math.cos(laser[2]), math.sin(laser[2])
+    for i in range(points.shape[0]):
+        dx, dy = points[i, 0] - laser[0], points[i, 1] - laser[1]
+        if points[i, 3] <= (oldest[1] if points[i, 2] == oldest[0] else oldest[2]) or dx * dx + dy * dy >= reach_m * reach_m:
+            continue
+        bearing_rad = math.atan2(c * dy - s * dx, c * dx + s * dy)
+        kept[i] = bearing_rad < field_rad[0] or bearing_rad > field_rad[1]
+    return points[kept]
 
 
 @kernel
