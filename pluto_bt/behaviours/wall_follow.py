@@ -17,6 +17,8 @@ from pluto_bt.skills.wall_follow import AT_WALL
 SIDES: Final = {"left": 1.0, "right": -1.0}
 WRIST_DPS, WRIST_DPS2 = 40.0, 80.0
 PAN_DEG: Final = 45.0  # shows the wall beside the camera, and still what comes from ahead on the other side
+HEADWAY_M: Final = 0.05
+HELD_S, GLANCE_S = 3.0, 2.5  # who is held for so long looks straight ahead for so long: what held him may have gone where the turned laser cannot see
 
 
 class WallFollow(MotionLeaf):
@@ -40,6 +42,7 @@ class WallFollow(MotionLeaf):
             return self.fail("no-device", "the platform has neither laser nor sonar")
         self._side = SIDES[self.get_input("side")]
         self._length_m, self._from_m, self._way_m = float(self.get_input("length_m")), math.inf, 0.0
+        self._at_m, self._came_s, self._glances = math.inf, self.now_s(), False
         velocity = (self.max_speed_mps(robot), math.radians(robot.platform.limits.max_turn_rate_dps))
         self.post(robot, CommandType.WALL_FOLLOW, velocity=velocity, force=(0.0, float(self.get_input("distance_m")), self._side))
         self._point(robot, self._side * math.radians(PAN_DEG))
@@ -60,6 +63,7 @@ class WallFollow(MotionLeaf):
             if self._from_m == math.inf and status.text == AT_WALL:
                 self._from_m = raw.position[0]
             self._way_m = max(self._way_m, raw.position[0] - self._from_m)
+            self._glance(robot, raw.position[0])
         if self._way_m >= self._length_m:
             return self.succeed(f"{self._way_m:.2f} m along the wall")
         return self.wait(f"{self._way_m:.2f} m along the wall")
@@ -76,6 +80,15 @@ class WallFollow(MotionLeaf):
         super().terminate(new_status)
         if moved and robot is not None:
             self._point(robot, 0.0)
+
+    def _glance(self, robot: Robot, odometer_m: float) -> None:
+        """Held for a while, look ahead, and back at the wall, until there is headway."""
+        if abs(odometer_m - self._at_m) > HEADWAY_M:
+            self._at_m, self._came_s = odometer_m, self._last_s
+        glances = (self._last_s - self._came_s) % (HELD_S + GLANCE_S) > HELD_S
+        if glances != self._glances:
+            self._glances = glances
+            self._point(robot, 0.0 if glances else self._side * math.radians(PAN_DEG))
 
     def _point(self, robot: Robot, pan_rad: float) -> None:
         wrist = robot.platform.devices.wrist
