@@ -14,6 +14,8 @@ COMMANDS = {
     "nodes": "list every node with its ports",
     "new": "write a first mission or leaf to start from",
     "ps": "show the modules of a running robot",
+    "stop": "stop a running robot at once",
+    "module": "start or stop one module of a running robot",
     "shell": "talk to a running robot: stop, goto X Y, maketurn DEG, pose, tree",
     "why": "why the robot is not moving: of a running robot or of a black box",
     "replay": "a recorded run, tick by tick, or executed again",

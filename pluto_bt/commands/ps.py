@@ -3,29 +3,21 @@
 from __future__ import annotations
 
 import json
-import sys
 
-from pluto_bt.commands.options import Parser
-from pluto_bt.source import PlutoError
+from pluto_bt.commands.gateway_call import call, gateway_parser
 
 COLUMNS = ("name", "group", "state", "steps", "failures", "overruns", "worst_ms", "text")
 
 
 def main(argv: list[str]) -> int:
     """Print one line a module."""
-    parser = Parser(prog="pluto ps", description="Show the modules of a running robot.")
-    parser.add_argument("--gateway", metavar="HOST:PORT", default="127.0.0.1:7500")
+    parser = gateway_parser("ps", "Show the modules of a running robot.")
     parser.add_argument("--json", action="store_true", help="one JSON object")
     args = parser.parse_args(argv)
-    from pluto_bt.gateway.client import Client, GatewayError
-    from pluto_bt.gateway.listen import parse_address
-
-    try:
-        with Client(*parse_address(args.gateway)) as client:
-            rows = [dict(row.attrib, text=row.text or "") for row in client.request("modules")]
-    except PlutoError as error:
-        print(f"pluto ps: {error}\n  start a robot with `pluto run MISSION.xml --realtime`", file=sys.stderr)
-        return 1 if isinstance(error, GatewayError) else 2
+    modules = call("ps", args.gateway, "modules")
+    if modules is None:
+        return 1
+    rows = [dict(row.attrib, text=row.text or "") for row in modules]
     if args.json:
         print(json.dumps({"modules": rows}))
         return 0

@@ -1,0 +1,35 @@
+"""What the commands share that say one thing to a running robot over its gateway."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from pluto_bt.commands.options import Parser
+
+if TYPE_CHECKING:
+    from pluto_bt.gateway.client import Element
+
+HINT = "start a robot with `pluto run MISSION.xml --realtime`"
+
+
+def gateway_parser(command: str, description: str) -> Parser:
+    """A parser that knows `--gateway`."""
+    parser = Parser(prog=f"pluto {command}", description=description)
+    parser.add_argument("--gateway", metavar="HOST:PORT", default="127.0.0.1:7500")
+    return parser
+
+
+def call(command: str, address: str, tag: str, **attributes: str) -> Element | None:
+    """The robot's answer; None if it refused or is not there, which is told. Raises InputError for an address that is none."""
+    from pluto_bt.gateway.client import Client, GatewayError
+    from pluto_bt.gateway.listen import parse_address
+
+    host, port = parse_address(address)
+    try:
+        with Client(host, port) as client:
+            return client.request(tag, **attributes)
+    except GatewayError as error:
+        hint = f"\n  {HINT}" if error.code == "no-connection" else ""
+        print(f"pluto {command}: {error.code}: {error}{hint}", file=sys.stderr)
+        return None
