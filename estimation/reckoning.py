@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import bisect
 from collections import deque
 from typing import NamedTuple
 
+from estimation.history import enclosing
 from estimation.se2 import IDENTITY, Pose2, arc, between, blend, compose
 
 
@@ -62,14 +62,12 @@ class Reckoning:
 
     def at(self, stamp_s: float) -> Sums | None:
         """The sums at a stamp; None if it is not remembered."""
-        i = bisect.bisect_left(self._moments, stamp_s, key=_stamp)
-        if i == len(self._moments) or (i == 0 and self._moments[0].stamp_s != stamp_s):
+        found = enclosing(self._moments, stamp_s)
+        if found is None:
             return None
-        after = self._moments[i]
-        if after.stamp_s == stamp_s:
+        before, after, share = found
+        if before is after:
             return after
-        before = self._moments[i - 1]
-        share = (stamp_s - before.stamp_s) / (after.stamp_s - before.stamp_s)
         sums = (x + share * (y - x) for x, y in zip(before[2:], after[2:], strict=True))
         return Sums(stamp_s, blend(before.pose, after.pose, share), *sums)
 
@@ -83,7 +81,3 @@ def motion_between(a: Sums, b: Sums) -> Motion:
 def together(motions: list[Motion]) -> Motion:
     """Several as one, their poses left out."""
     return Motion(motions[-1].until_s, IDENTITY, *(sum(values) for values in zip(*(motion[2:] for motion in motions), strict=True)))
-
-
-def _stamp(moment: Sums) -> float:
-    return moment.stamp_s

@@ -9,6 +9,7 @@ import bisect
 from collections import deque
 
 from estimation.covariance import ZERO, Covariance, blended, stepped
+from estimation.history import enclosing, stamp_of
 from estimation.se2 import IDENTITY, Pose2, blend, compose, inverse
 
 Tilt = tuple[float, float]
@@ -65,14 +66,12 @@ class Track:
 
     def at(self, stamp_s: float) -> Moment | None:
         """The state at a past stamp, between two steps along the arc that joins them; None outside the memory."""
-        i = bisect.bisect_left(self._moments, stamp_s, key=_stamp)
-        if i == len(self._moments) or (i == 0 and self._moments[0].stamp_s != stamp_s):
+        found = enclosing(self._moments, stamp_s)
+        if found is None:
             return None
-        after = self._moments[i]
-        if after.stamp_s == stamp_s:
+        before, after, share = found
+        if before is after:
             return after
-        before = self._moments[i - 1]
-        share = (stamp_s - before.stamp_s) / (after.stamp_s - before.stamp_s)
         pose_odom = blend(before.pose_odom, after.pose_odom, share)
         adjustment = compose(after.pose_map, inverse(after.pose_odom))  # not `self.adjustment`: `after` may be older than the last post
         return Moment(
@@ -118,15 +117,12 @@ class Track:
 
     def _since(self, stamp_s: float) -> list[Moment]:
         """The moments at and after a stamp, oldest first."""
-        i = bisect.bisect_left(self._moments, stamp_s, key=_stamp)
+        i = bisect.bisect_left(self._moments, stamp_s, key=stamp_of)
         return [self._moments[k] for k in range(i, len(self._moments))]
 
     def _stamp_before(self, moment: Moment) -> float:
-        return self._moments[bisect.bisect_left(self._moments, moment.stamp_s, key=_stamp) - 1].stamp_s
+        return self._moments[bisect.bisect_left(self._moments, moment.stamp_s, key=stamp_of) - 1].stamp_s
 
-
-def _stamp(moment: Moment) -> float:
-    return moment.stamp_s
 
 
 def _next_covariance(P: Covariance, before: Pose2, after: Pose2, moment: Moment) -> Covariance:
