@@ -167,8 +167,8 @@ def make_runner(
     if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
     options = Options(
-        world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
-        trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
+        world=inputs.world, robot=inputs.robot, params_path=inputs.params, map=inputs.map, start=inputs.start, seed=inputs.seed,
+        max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
         gateway=parse_address(gateway) if gateway is not None else None,
         groot=groot_address(groot) if groot is not None else None, load=load, on_event=on_event, on_progress=on_progress,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,

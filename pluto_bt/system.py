@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -81,6 +82,7 @@ class Options:
 
     world: World
     robot: RobotFile
+    params_path: Path | None = None
     map: World | None = None
     start: tuple[float, float, float] | None = None
     seed: int = 0
@@ -216,6 +218,14 @@ class System:
                 self.order_module(need, True)
         part.order(run)
         self.scheduler.waker(part.row)()
+
+    def tune(self, robot: RobotFile) -> None:
+        """Other parameters: each module takes them between two steps, what is made later begins with them. Thread-safe."""
+        self.context.platform = robot
+        for part in self._parts.values():
+            take = getattr(part.component, "tune", None)
+            if take is not None:
+                part.hand(partial(take, robot))
 
     def stop_robot(self, source: str) -> None:
         """Zero velocity at once, on every link."""

@@ -67,7 +67,7 @@ class Desk:
         try:
             reply, later = self._answer(ask, key, stops, now_s)
         except RefusedError as refusal:
-            reply, later = Error(code=refusal.code, text=refusal.text), []
+            reply, later = _error(refusal), [with_id(_error(more), ask.request.id) for more in refusal.more]
         except Exception as error:  # a fault of the robot's side must not take the link down
             reply, later = Error(code="internal", text=f"{type(error).__name__}: {error}"), []
         self._send(Answer(ask.client, "direct", with_id(reply, ask.request.id)))
@@ -129,6 +129,10 @@ class Desk:
                 return replies.Modules(state=port.modules())
             case requests.ModuleOp():
                 port.module(request.name, request.op, source_of(ask))
+            case requests.Params():
+                return port.params(request, source_of(ask))
+            case requests.SetTopic():
+                port.set_topic(request.topic, request.fields, source_of(ask))
             case requests.Release():
                 self._require_lease(key, now_s)
                 port.release_estop(source_of(ask))
@@ -231,11 +235,13 @@ class Desk:
                 raise RefusedError("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
         if request.op == "list":
             return replies.Mission(state=port.mission_state(), names=tuple(port.mission_names()))
+        if request.op == "fetch":
+            return replies.Mission(state=port.mission_state(), text=port.mission_text(request.name))
         if request.op != "state":
             port.mission(request.op, request.name, request.text, source_of(ask))
         if request.op in _MOVES:
             self._stop_again(stops, ask)
-        return replies.Mission(state=port.mission_state()) if request.op in ("state", "fetch") else Ok()
+        return replies.Mission(state=port.mission_state()) if request.op == "state" else Ok()
 
     # who is who --------------------------------------------------------------------------------------------------
     def _meet(self, ask: Ask) -> str:
@@ -252,3 +258,7 @@ class Desk:
         client = self._client_of.get(key)
         if client is not None:
             self._send(Answer(client, "later", reply))
+
+
+def _error(refusal: RefusedError) -> Error:
+    return Error(code=refusal.code, text=refusal.text, line=refusal.line, column=refusal.column)

@@ -41,7 +41,8 @@ class Exchange:
         self._sent_seq.clear()
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
-        return Welcome(self._port.name, self._port.now_s(), tuple(self._port.topics()), token, limits, first_client)
+        port = self._port
+        return Welcome(port.name, port.now_s(), tuple(port.topics()), token, limits, first_client, tuple(port.catalogue()))
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""
@@ -56,6 +57,7 @@ class Exchange:
 
     def step(self, now_s: float, has_room: Callable[[], bool] = lambda: True) -> None:
         """Send what changed, answer some of what came, both as long as the carrier has room; then look after leases and runs."""
+        self._port.step(now_s)
         if has_room():
             self._publish(now_s)
         self._take_in()

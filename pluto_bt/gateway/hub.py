@@ -30,6 +30,7 @@ class Hub:
         self.robot = welcome.robot
         self.token = welcome.token
         self._topics = welcome.topics
+        self._catalogue = welcome.catalogue
         self._send = send
         self._sessions: dict[int, Session] = {}
         self._asked: set[int] = set()  # clients that the executive has heard of
@@ -94,7 +95,7 @@ class Hub:
 
     def describe(self, request: Describe) -> Description:
         """What exists. Raises: RefusedError."""
-        return describe(request, self._topics)
+        return describe(request, self._topics, self._catalogue)
 
     def require_topic(self, pattern: str) -> None:
         """Raises: RefusedError `unknown-topic` if the pattern means no topic of this run."""

@@ -13,7 +13,9 @@ from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.requests import ELEMENTS, AnyRequest, Run, Vector
 from pluto_bt.source import did_you_mean
 
-_FROM_CONTENT = {"command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text",)}
+_FROM_CONTENT = {
+    "command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text",), "params": ("values",), "set": ("fields",),
+}  # fmt: skip
 _COUNTS = {"position": 2, "velocity": 2, "acceleration": 2}
 _INLINE = re.compile(rb"<mission\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>(.*)</mission\s*>", re.DOTALL)
 
@@ -68,6 +70,8 @@ def _content(message: Message) -> dict[str, Any]:
     stray = "".join(message.element.itertext()) if not children else (message.element.text or "") + "".join(child.tail or "" for child in children)
     if stray.strip():
         raise RefusedError("invalid", f"<{tag}>: expected no text, found {stray.strip()[:40]!r}")
+    if tag in ("params", "set"):
+        return _texts(tag, children)
     allowed = _FROM_CONTENT["command"] if tag == "command" else ()
     found: dict[str, Any] = {}
     for child in children:
@@ -76,6 +80,19 @@ def _content(message: Message) -> dict[str, Any]:
             raise RefusedError("invalid", f"<{tag}>: expected {expected}, found <{child.tag}>")
         found[child.tag] = _vector(tag, child)
     return found
+
+
+def _texts(tag: str, children: list[Any]) -> dict[str, Any]:
+    """The texts of `<p name="…">` by name, or of the fields of a topic by tag; each once, and nothing inside them."""
+    found: dict[str, str] = {}
+    for child in children:
+        name = child.get("name") if tag == "params" else child.tag
+        if tag == "params" and (child.tag != "p" or list(child.attrib) != ["name"]):
+            raise RefusedError("invalid", f'<{tag}>: expected <p name="…">, found <{" ".join([child.tag, *child.attrib])}>')
+        if name in found or len(child) or (tag == "set" and len(child.attrib)):
+            raise RefusedError("invalid", f'<{tag}>: expected each of its elements once, with a text alone; look at "{name}"')
+        found[name] = child.text or ""
+    return {"values" if tag == "params" else "fields": found}
 
 
 def _vector(tag: str, child: Any) -> Vector:

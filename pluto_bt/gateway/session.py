@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from pluto_bt.gateway.hub import Hub
 
 OPERATORS = frozenset({"operator", "shell", "console"})
-CAPABILITIES = ("get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "modules", "describe", "log")
+CAPABILITIES = (
+    "get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "why", "modules", "params", "set", "describe", "log",
+)  # fmt: skip
 
 
 class Session:

@@ -10,7 +10,7 @@ import numpy as np
 from pluto_bt.blackboard.messages import Event, Message, read_only
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway.limits import Limits
-from pluto_bt.gateway.replies import AnyReply
+from pluto_bt.gateway.replies import AnyReply, Item
 from pluto_bt.gateway.requests import AnyRequest
 
 TYPES: dict[str, type[Message]] = {topic.name: topic.type for topic in TOPICS}
@@ -57,6 +57,7 @@ class Welcome(Frame, frozen=True):
     token: str
     limits: Limits
     first_client: int
+    catalogue: tuple[Item, ...] = ()
 
 
 class Stamped(msgspec.Struct, frozen=True, gc=False):

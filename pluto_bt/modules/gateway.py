@@ -16,7 +16,6 @@ class Gateway:
         """Raises: InputError if the address that was asked for cannot be had; the default one in use is only a warning."""
         asked: Address | None = context.system.options.gateway
         port = GatewayPort(context)
-        self._watch = port.why_watch
         self._link: GatewayLink | None = GatewayLink(port, asked or Address())
         self._trouble = ""
         try:
@@ -43,7 +42,6 @@ class Gateway:
     def step(self, now_s: float) -> None:
         """Answer, publish, look after the process."""
         if self._link is not None:
-            self._watch.step(now_s)
             self._link.step(now_s)
 
     def stop(self) -> None:

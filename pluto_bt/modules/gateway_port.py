@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import NamedTuple
 from xml.sax.saxutils import quoteattr
 
@@ -12,18 +14,25 @@ import msgspec
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
 from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
-from pluto_bt.gateway.replies import Cause
+from pluto_bt.gateway.replies import Cause, Item, ParamsState
+from pluto_bt.gateway.requests import Params
+from pluto_bt.gateway.setting import message_from
+from pluto_bt.modules.catalogue import catalogue
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
+from pluto_bt.modules.tuning import Tuning
 from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.skills.reasons import STOPPED
+from pluto_bt.source import did_you_mean
 from pluto_bt.trees import Mission, MissionError
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire
 ERRANDS_KEPT = 64
+FAULTS_TOLD = 50
+_INCLUDE = re.compile(r"<\s*include\b")
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 
 
@@ -43,6 +52,10 @@ class GatewayPort:
         self._errands: dict[str, Errand] = {}
         self._latch = context.latch
         self.why_watch = WhyWatch(context)
+        self._tuning = Tuning(context.system.options.robot, context.system.tune, context.system.options.params_path)
+        board = context.board
+        self._publishers = {topic.name: board.publisher(topic.name, "gateway") for topic in board.topics if topic.writer == "gateway"}
+        self._is_interactive = False
 
     @property
     def name(self) -> str:
@@ -68,11 +81,13 @@ class GatewayPort:
 
     def stop(self, source: str) -> None:
         """Zero velocity at once; a running mission pauses."""
+        self._touch(stop=source)
         self._system.operator_stop(source)
 
     def estop(self, source: str, reason: str) -> None:
         """As stop, latched until released."""
         self._latch.set(ESTOP, reason or "emergency stop")
+        self._touch(estop=reason)
         self._system.operator_stop(source, ESTOP)
         self._system.say("error", ESTOP, source, f"emergency stop: {reason or 'no reason given'}")
 
@@ -93,6 +108,7 @@ class GatewayPort:
             raise RefusedError("wrong-state", "a mission runs; pause it first")
         if target != "wrist":
             self._latch.release(OPERATOR_STOP)  # a new command is a deliberate act
+        self._touch(command=target)
         if self._system.inboxes[LINK_OF_TARGET[target]].post(source, command):
             raise RefusedError("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
 
@@ -105,10 +121,9 @@ class GatewayPort:
         try:
             mission = self._load(f'<root BTCPP_format="4"><BehaviorTree ID="run"><{node}{attributes}/></BehaviorTree></root>')
         except MissionError as error:
-            fault = error.faults[0]
-            code = "unknown-node" if fault.code == "unknown-node" else "bad-value"
-            raise RefusedError(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
+            raise _refusal(error, {"unknown-node": "unknown-node"}, "bad-value", with_place=False) from None
         self._latch.release(OPERATOR_STOP)
+        self._touch(run=node)
         activity = self._system.executive.core.start_errand(mission)
         while len(self._errands) >= ERRANDS_KEPT:
             del self._errands[next(iter(self._errands))]
@@ -148,6 +163,8 @@ class GatewayPort:
     def mission(self, op: str, name: str, text: str, source: str) -> None:
         """Load, check, start, pause, resume, abort."""
         core = self._system.executive.core
+        if op not in ("load", "check"):
+            self._touch(mission=op)
         if op in ("load", "check"):
             loaded = self._load_named(name, text)
             self._loaded = loaded if op == "load" else self._loaded
@@ -183,14 +200,54 @@ class GatewayPort:
 
     def modules(self) -> ModulesState:
         """Every module of the run."""
-        return ModulesState(self.now_s(), tuple(module_state(part) for part in self._system.parts))
+        return ModulesState(self.now_s(), tuple(module_state(part, self._system.clock.now_ns()) for part in self._system.parts))
 
     def module(self, name: str, op: str, source: str) -> None:
         """Start or stop a module."""
-        try:
-            self._system.order_module(name, op == "start")
-        except KeyError:
-            raise RefusedError("unknown-module", f'no module "{name}"') from None
+        names = [part.module.name for part in self._system.parts]
+        if name not in names:
+            raise RefusedError("unknown-module", f'no module "{name}"; {did_you_mean(name, names) or "one of: " + ", ".join(names)}')
+        self._touch(module=name, op=op)
+        self._system.order_module(name, op == "start")
+
+    def params(self, request: Params, source: str) -> ParamsState:
+        """Look at parameters, or change them."""
+        state, changed = self._tuning.answer(request, self.now_s())
+        self._tell_change(changed, source)
+        return state
+
+    def step(self, now_s: float) -> None:
+        """Watch the situation; a change of parameters that nobody confirmed goes back."""
+        self.why_watch.step(now_s)
+        self._tell_change(self._tuning.step(now_s), "nobody confirmed: gateway")
+
+    def set_topic(self, topic: str, fields: Mapping[str, str], source: str) -> None:
+        """Write one of the gateway's own topics."""
+        known = {row.name: row for row in self._system.board.topics}
+        if topic not in known:
+            raise RefusedError("unknown-topic", f'unknown topic "{topic}"; {did_you_mean(topic, known) or "<describe/> lists all"}')
+        if topic not in self._publishers:
+            raise RefusedError("read-only", f"{topic} is written by {known[topic].writer}; clients may set {', '.join(self._publishers)}")
+        value = message_from(known[topic].type, fields, self.now_s())
+        self._touch(set=topic)
+        self._publishers[topic].put(value, self.now_s())
+
+    def catalogue(self) -> Sequence[Item]:
+        """Nodes, parameters and modules."""
+        return catalogue(self._system.parts)
+
+    def _tell_change(self, changed: Mapping[str, str], source: str) -> None:
+        if changed:
+            self._touch(params=dict(changed))
+            self._system.say("info", "params-changed", source, ", ".join(f"{name} = {value}" for name, value in changed.items()))
+
+    def _touch(self, **what: object) -> None:
+        """Somebody interferes: the trace says so, for such a run cannot be repeated by its seed alone."""
+        entry = {"t": self._system.clock.now_ns(), "gateway": what}
+        if not self._is_interactive:
+            self._is_interactive = True
+            entry["interactive"] = True
+        self._system.trace.line(entry)
 
     def _mission_runs(self) -> bool:
         state: str = self._system.executive.core.coming_state
@@ -207,9 +264,39 @@ class GatewayPort:
         return mission
 
     def _load_named(self, name: str, text: str) -> Mission:
-        if not text and name not in self.mission_names():
-            raise RefusedError("bad-mission", f'no mission "{name}" is shipped; send it inline')
+        if _INCLUDE.search(text):
+            raise RefusedError("bad-mission", "a mission sent inline includes no files: expected one whole document, found <include>")
         try:
-            return self._load(text or str(package_root() / SHIPPED["mission"][0] / name))
+            return self._load(text or str(self._path(name)))
         except MissionError as error:
-            raise RefusedError("bad-mission", str(error)) from None
+            raise _refusal(error, {}, "bad-mission", with_place=True) from None
+
+    def _path(self, name: str) -> Path:
+        """The file of a shipped mission; no other file can be named."""
+        known = self.mission_names()
+        if name not in known:
+            hint = did_you_mean(name, known)
+            raise RefusedError("bad-mission", f'no mission "{name}" is shipped; {hint + ", or " if hint else ""}send it inline')
+        return package_root() / SHIPPED["mission"][0] / name
+
+    def mission_text(self, name: str) -> str:
+        """The document of a shipped mission, or of the one at work."""
+        if name:
+            return self._path(name).read_text(encoding="utf-8")
+        activity = self._system.executive.core.mission
+        if activity is None:
+            raise RefusedError("no-value", "no mission is at work; name one of those that <mission op=\"list\"/> tells")
+        from pluto_bt.trees.dump import dump
+
+        return dump(activity.mission, "xml")
+
+
+def _refusal(error: MissionError, codes: Mapping[str, str], otherwise: str, *, with_place: bool) -> RefusedError:
+    """All faults of a document, each with its line and column in it."""
+    refusals = []
+    for fault in error.faults:
+        words = (fault.message, fault.expected and f"expected {fault.expected}", fault.found and f"found {fault.found}", fault.mend)
+        place = (fault.line, fault.column) if with_place else (0, 0)
+        refusals.append(RefusedError(codes.get(fault.code, otherwise), "; ".join(filter(None, words)), *place))
+    first, *more = refusals[:FAULTS_TOLD]
+    return RefusedError(first.code, first.text, first.line, first.column, more)
