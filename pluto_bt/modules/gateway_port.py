@@ -3,16 +3,10 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
-
-import msgspec
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
-from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
 from pluto_bt.gateway.replies import Cause, Item, ParamsState
 from pluto_bt.gateway.requests import Params
@@ -20,20 +14,16 @@ from pluto_bt.gateway.setting import message_from
 from pluto_bt.modules.catalogue import catalogue
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
+from pluto_bt.modules.gateway_missions import GatewayMissions
 from pluto_bt.modules.tuning import Tuning
 from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
-from pluto_bt.skills.reasons import STOPPED
 from pluto_bt.source import did_you_mean
-from pluto_bt.trees import Mission, MissionError
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire
 ERRANDS_KEPT = 64
-FAULTS_TOLD = 50
-_INCLUDE = re.compile(r"<\s*include\b")
-OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 
 
 class Errand(NamedTuple):
@@ -48,7 +38,7 @@ class GatewayPort:
 
     def __init__(self, context: Context) -> None:
         self._system = context.system
-        self._loaded: Mission | None = None
+        self._missions = GatewayMissions(context)
         self._errands: dict[str, Errand] = {}
         self._latch = context.latch
         self.why_watch = WhyWatch(context)
@@ -103,9 +93,7 @@ class GatewayPort:
 
     def post_command(self, target: str, command: ActuatorState, source: str) -> None:
         """Give a command to a link of the chain or to the wrist."""
-        self._refuse_if_latched()
-        if self._mission_runs():
-            raise RefusedError("wrong-state", "a mission runs; pause it first")
+        self._missions.require_idle("pause it first")
         if target != "wrist":
             self._latch.release(OPERATOR_STOP)  # a new command is a deliberate act
         self._touch(command=target)
@@ -114,14 +102,8 @@ class GatewayPort:
 
     def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
         """Start one node as an errand."""
-        self._refuse_if_latched()
-        if self._mission_runs():
-            raise RefusedError("wrong-state", "a mission runs; pause it first")
-        attributes = "".join(f" {name}={quoteattr(value)}" for name, value in ports.items())
-        try:
-            mission = self._load(f'<root BTCPP_format="4"><BehaviorTree ID="run"><{node}{attributes}/></BehaviorTree></root>')
-        except MissionError as error:
-            raise _refusal(error, {"unknown-node": "unknown-node"}, "bad-value", with_place=False) from None
+        self._missions.require_idle("pause it first")
+        mission = self._missions.single(node, ports)
         self._latch.release(OPERATOR_STOP)
         self._touch(run=node)
         activity = self._system.executive.core.start_errand(mission)
@@ -151,41 +133,22 @@ class GatewayPort:
             self._system.executive.core.end_errand(errand.activity, reason)
 
     def mission_state(self) -> MissionState:
-        """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
-        sample, coming = self._system.board.newest("mission/state"), self._system.executive.core.coming_state
-        known = sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
-        return known if known.state == coming else msgspec.structs.replace(known, state=coming, reason="")
+        """The mission, with what has been ordered already."""
+        return self._missions.state()
 
     def mission_names(self) -> Sequence[str]:
         """The shipped missions."""
-        return sorted(path.name for path in (package_root() / SHIPPED["mission"][0]).glob("*.xml"))
+        return self._missions.names()
+
+    def mission_text(self, name: str) -> str:
+        """The document of a shipped mission, or of the one at work."""
+        return self._missions.text(name)
 
     def mission(self, op: str, name: str, text: str, source: str) -> None:
         """Load, check, start, pause, resume, abort."""
-        core = self._system.executive.core
         if op not in ("load", "check"):
             self._touch(mission=op)
-        if op in ("load", "check"):
-            loaded = self._load_named(name, text)
-            self._loaded = loaded if op == "load" else self._loaded
-        elif op == "start":
-            self._refuse_if_latched()
-            if self._loaded is None:
-                raise RefusedError("wrong-state", 'no mission is loaded; send <mission op="load" name="…"/> first')
-            if self._mission_runs():
-                raise RefusedError("wrong-state", "a mission runs; abort it first")
-            self._latch.release(OPERATOR_STOP)
-            core.start(self._loaded)
-        elif op == "abort":
-            core.abort(STOPPED)
-        elif op in OPS_OF_STATE:
-            if op == "resume":
-                self._refuse_if_latched()
-            if self.mission_state().state != OPS_OF_STATE[op]:
-                raise RefusedError("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
-            core.pause(OPERATOR_STOP) if op == "pause" else self._system.operator_resume()
-        else:
-            raise RefusedError("invalid", f'mission op="{op}" is not offered')
+        self._missions.act(op, name, text)
 
     def tree_text(self, format: str) -> str:
         """The tree drawn."""
@@ -248,55 +211,3 @@ class GatewayPort:
             self._is_interactive = True
             entry["interactive"] = True
         self._system.trace.line(entry)
-
-    def _mission_runs(self) -> bool:
-        state: str = self._system.executive.core.coming_state
-        return state == RUNNING
-
-    def _refuse_if_latched(self) -> None:
-        hold = self._latch.hold(ESTOP)
-        if hold is not None:
-            raise RefusedError("estopped", f"emergency stop ({hold.text}); release it first")
-
-    def _load(self, text: str) -> Mission:
-        mission = self._system.options.load(text)
-        mission.attach(self._system.robot)
-        return mission
-
-    def _load_named(self, name: str, text: str) -> Mission:
-        if _INCLUDE.search(text):
-            raise RefusedError("bad-mission", "a mission sent inline includes no files: expected one whole document, found <include>")
-        try:
-            return self._load(text or str(self._path(name)))
-        except MissionError as error:
-            raise _refusal(error, {}, "bad-mission", with_place=True) from None
-
-    def _path(self, name: str) -> Path:
-        """The file of a shipped mission; no other file can be named."""
-        known = self.mission_names()
-        if name not in known:
-            hint = did_you_mean(name, known)
-            raise RefusedError("bad-mission", f'no mission "{name}" is shipped; {hint + ", or " if hint else ""}send it inline')
-        return package_root() / SHIPPED["mission"][0] / name
-
-    def mission_text(self, name: str) -> str:
-        """The document of a shipped mission, or of the one at work."""
-        if name:
-            return self._path(name).read_text(encoding="utf-8")
-        activity = self._system.executive.core.mission
-        if activity is None:
-            raise RefusedError("no-value", "no mission is at work; name one of those that <mission op=\"list\"/> tells")
-        from pluto_bt.trees.dump import dump
-
-        return dump(activity.mission, "xml")
-
-
-def _refusal(error: MissionError, codes: Mapping[str, str], otherwise: str, *, with_place: bool) -> RefusedError:
-    """All faults of a document, each with its line and column in it."""
-    refusals = []
-    for fault in error.faults:
-        words = (fault.message, fault.expected and f"expected {fault.expected}", fault.found and f"found {fault.found}", fault.mend)
-        place = (fault.line, fault.column) if with_place else (0, 0)
-        refusals.append(RefusedError(codes.get(fault.code, otherwise), "; ".join(filter(None, words)), *place))
-    first, *more = refusals[:FAULTS_TOLD]
-    return RefusedError(first.code, first.text, first.line, first.column, more)
