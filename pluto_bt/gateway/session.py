@@ -66,9 +66,9 @@ class Session:
             self._take(message, now_s)
 
     def _take(self, message: Message, now_s: float) -> None:
-        if self.closing and message.element.tag not in STOPS:
+        if self.closing and message.tag not in STOPS:
             return
-        id = message.element.get("id", "")[:128]
+        id = message.attrib.get("id", "")[:128]
         try:
             request = parse(message)
             if self._may_speak(request):
