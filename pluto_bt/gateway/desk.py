@@ -9,6 +9,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 
 from pluto_bt.gateway import inquiries, replies, requests
+from pluto_bt.gateway.access import is_control
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.leases import Held, Leases
 from pluto_bt.gateway.outcomes import Outcomes
 from pluto_bt.gateway.port import RefusedError, RobotPort
@@ -23,10 +25,11 @@ _MOVES = {"start", "resume"}
 class Desk:
     """Answers requests, one at a time, and watches what they began."""
 
-    def __init__(self, port: RobotPort, send: Callable[[Answer], None]) -> None:
+    def __init__(self, port: RobotPort, send: Callable[[Answer], None], audit: Audit) -> None:
         """`send` must be thread-safe and never block."""
         self._port = port
         self._send = send
+        self._audit = audit
         self._leases = Leases()
         self._outcomes = Outcomes()
         self._runs = Runs(port, self._tell)
@@ -52,6 +55,7 @@ class Desk:
             reply = Error(id=request.id, code="internal", text=f"the robot's stop raised {type(error).__name__}: {error}")
         self._stopped.append(source_of(ask))
         self._send(Answer(ask.client, "stop", reply))
+        self._audit.note(ask, reply, self._port.now_s())
         return True
 
     # the stepping thread -----------------------------------------------------------------------------------------
@@ -71,6 +75,8 @@ class Desk:
         except Exception as error:  # a fault of the robot's side must not take the link down
             reply, later = Error(code="internal", text=f"{type(error).__name__}: {error}"), []
         self._send(Answer(ask.client, "direct", with_id(reply, ask.request.id)))
+        if is_control(ask.request):
+            self._audit.note(ask, reply, now_s)
         for follow in later:
             self._tell(key, follow)
 

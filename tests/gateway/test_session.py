@@ -10,6 +10,7 @@ from lxml import etree
 
 from pluto_bt import gateway
 from pluto_bt.blackboard import messages as m
+from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.local import LocalClient, LocalGateway
 from pluto_bt.gateway.port import RunState
@@ -25,7 +26,7 @@ class Story:
 
     def __init__(self, limits: Limits | None = None, token: str = "") -> None:
         self.robot = FakeRobot()
-        self.gateway = LocalGateway(self.robot, limits, token)
+        self.gateway = LocalGateway(self.robot, limits, whole(token))
         self.step(0.0)
 
     def client(self, hello: str = "") -> LocalClient:
