@@ -147,7 +147,12 @@ def main() -> None:
     assert link.address is not None
     print(link.address.port, link.pid, flush=True)
     over = threading.Event()
-    threading.Thread(target=lambda: (sys.stdin.read(), over.set()), daemon=True).start()
+
+    def until_the_end() -> None:
+        sys.stdin.read()
+        over.set()
+
+    threading.Thread(target=until_the_end, daemon=True).start()
     due_ns = wall_ns()
     while not over.is_set():
         due_ns = max(due_ns + round(NS / hz), wall_ns())

@@ -83,7 +83,6 @@ class Hub:
             return (frame.client,)
         self._run_minus_ours_s = frame.now_s - now_s
         self.batch_s = now_s
-        self._channels.wake(now_s)
         touched: dict[int, None] = {}
         for value in frame.values:
             newest = Newest(value.topic, value.seq, frame.now_s - value.written_s, now_s, value.payload)

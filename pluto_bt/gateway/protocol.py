@@ -19,13 +19,14 @@ class Connection:
     """The framing, the rate and the end of one connection.
 
     Attributes:
+        queue: what `to_send` will give; only to be looked at.
         closing: a fatal error was said or the client is gone: send what is left, half-close, discard input for `linger_s`.
     """
 
     def __init__(self, limits: Limits | None = None) -> None:
         self._limits = limits or Limits()
         self._framer: Framer | None = Framer(self._limits)
-        self._out = bytearray()
+        self.queue = self._out = bytearray()
         self._tokens = self._limits.messages_per_s
         self._refilled_s: float | None = None
         self._too_fast = False

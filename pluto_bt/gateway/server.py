@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import socket
 import ssl
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 from typing import cast
 
 from pluto_bt.gateway.hub import Hub
@@ -14,7 +15,7 @@ from pluto_bt.gateway.session import Session
 
 SLICE_BYTES = 4096
 """Bytes of one client that are read before the others have their turn."""
-TICK_S, TICKS_A_SWEEP = 0.05, 5
+TICK_S, TICKS_A_SWEEP = 0.05, 10
 BACKLOG = 1024
 HANDSHAKE_S = 3.0
 
@@ -31,6 +32,8 @@ class ClientProtocol(asyncio.Protocol):
         self._is_full = False
         self._at_eof = False
         self._is_ending = False
+        self._fd = -1
+        self._before: tuple[Sized, Sized] = ((), ())  # what stands before a value that is sent at once
 
     # asyncio's calls ---------------------------------------------------------------------------------------------
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -45,6 +48,11 @@ class ClientProtocol(asyncio.Protocol):
         self._session.peer = ":".join(map(str, (self._transport.get_extra_info("peername") or ())[:2]))
         self._session.known_as(hub.access.by_certificate(_common_name(self._transport)))
         self._server.clients[self._session.client] = self
+        connection = transport.get_extra_info("socket")
+        if connection is not None and transport.get_extra_info("sslcontext") is None:
+            self._fd = connection.fileno()
+            self._before = (self._session.queue, self._session.subscriptions.due)
+            self._session.subscriptions.sink = self.send_now
         self.flush()
 
     def data_received(self, data: bytes) -> None:
@@ -108,6 +116,21 @@ class ClientProtocol(asyncio.Protocol):
             self._end()
         elif self._at_eof:
             self._end_if_served()
+
+    def send_now(self, line: bytes) -> bool:
+        """Write a line to the socket itself, where nothing waits before it: that costs half of what a transport's write does."""
+        transport, (replies, values) = self._transport, self._before
+        if replies or values or self._is_ending or transport.get_write_buffer_size() or transport.is_closing():
+            return False
+        try:
+            sent = os.write(self._fd, line)
+        except BlockingIOError:
+            return False
+        except OSError:  # gone; the transport will hear of it
+            return True
+        if sent < len(line):
+            transport.write(line[sent:])
+        return True
 
     def tick(self, now_s: float) -> None:
         """Look after the client's manners."""

@@ -44,6 +44,7 @@ class Session:
         self._hub = hub
         self._limits = hub.limits
         self._connection = Connection(hub.limits)
+        self.queue = self._connection.queue  # replies that wait for `to_send`
         self._stops = Stops()
         self._scopes: tuple[str, ...] = () if hub.access.keys else SCOPES
         self._is_known = not hub.access.keys  # by a token, or by a certificate

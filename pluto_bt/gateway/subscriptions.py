@@ -2,54 +2,50 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.requests import Subscribe
 
 ALIASES = {"mission": "mission/state"}
 """Short names that the protocol promises."""
-GOLDEN = 0.6180339887498949
+Sink = Callable[[bytes], bool]
+"""Sends a line past all queues, if nothing waits there; False if it cannot be sent at once."""
 
 
 class Flow:
     """One topic on its way to one client.
 
     Attributes:
-        next_s: not before this is another value sent. The first periods of clients differ, so that not all are served in one moment.
-        waiting: a value that is due and not sent yet, because the client does not read.
+        sink: sends at once; None where that cannot be, or the line is not the same for all clients.
+        seq: of the last value taken or sent.
+        waiting: a value that is not sent yet, because something stands before it.
         is_over: nobody wants it any more.
     """
 
-    __slots__ = ("client", "dropped", "is_over", "last_body", "next_s", "period_s", "seq", "shown", "waiting", "wish")
+    __slots__ = ("client", "dropped", "is_over", "last_body", "period_s", "seq", "shown", "sink", "waiting", "wish")
 
-    def __init__(self, client: int, topic: str, wish: Subscribe) -> None:
+    def __init__(self, client: int, topic: str, wish: Subscribe, sink: Sink | None) -> None:
         self.client = client
         self.wish = wish
         self.shown = wish.topic if wish.topic in ALIASES else ""
+        self.sink = None if self.shown or wish.id or wish.on_change else sink
         self.period_s = 1.0 / wish.max_rate_hz if wish.max_rate_hz > 0.0 else 0.0
-        self.next_s = -math.inf
-        self.seq = 0  # of the last value taken
+        self.seq = 0
         self.waiting: Newest | None = None
         self.dropped = 0
         self.last_body = ""
         self.is_over = False
 
-    def take(self, newest: Newest, now_s: float) -> bool:
-        """Take a value that is due; what still waited is lost. False if it says nothing new."""
+    def take(self, newest: Newest) -> bool:
+        """Take a value to be sent; what still waited is lost. False if it says nothing new."""
         if newest.seq == self.seq:
             return False
         if self.waiting is not None:
             self.dropped += 1
-        if self.period_s:
-            late_s = now_s - self.next_s
-            share = self.client * GOLDEN % 1.0 if self.seq == 0 else 1.0
-            self.next_s = self.next_s + self.period_s if late_s < self.period_s else now_s + share * self.period_s
-        elif self.seq:
+        if not self.period_s and self.seq:
             self.dropped += newest.seq - self.seq - 1
-        self.seq = newest.seq
-        self.waiting = newest
+        self.seq, self.waiting = newest.seq, newest
         return True
 
     def line(self, now_s: float) -> bytes:
@@ -70,6 +66,7 @@ class Subscriptions:
 
     def __init__(self, client: int) -> None:
         self._client = client
+        self.sink: Sink | None = None  # the server's; set before the first wish
         self._wishes: dict[str, Subscribe] = {}
         self.flows: dict[str, Flow] = {}  # by topic
         self.due: dict[Flow, None] = {}  # flows with a value that waits to be sent, in that order
@@ -110,7 +107,7 @@ class Subscriptions:
         for topic in topics:
             wish, old = self._wish(topic), self.flows.get(topic)
             if wish is not None:
-                flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish)
+                flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish, self.sink)
         for topic, flow in self.flows.items():
             if flows.get(topic) is not flow:
                 flow.is_over = True
