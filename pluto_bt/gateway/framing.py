@@ -219,6 +219,8 @@ class Framer:
             raise self._error("restricted-xml", "expected elements and text, found a processing instruction", element.sourceline)
         if event == "end":
             self._depth -= 1
+            if self._in_mission and self._depth > 0:  # its document is wanted as text: no tree of it piles up
+                element.getparent().remove(element)
             return element if self._depth == 0 else None
         self._depth += 1
         if self._depth == 1:

@@ -38,6 +38,7 @@ class Hub:
         self._catalogue = welcome.catalogue
         self._send = send
         self._sessions: dict[int, Session] = {}
+        self._evicted: list[int] = []  # who is still to be told
         self._asked: set[int] = set()  # clients that the executive has heard of
         self._next_client = welcome.first_client
         self._channels = Channels(welcome.topics)
@@ -48,6 +49,7 @@ class Hub:
     # clients -----------------------------------------------------------------------------------------------------
     def open(self, now_s: float) -> Session:
         """A session for a new connection; if there is no place it is already closing, with the error to send."""
+        self._make_room()
         taken = sum(not session.closing for session in self._sessions.values())
         is_reserve = taken >= self.limits.clients - self.limits.operator_places
         session = Session(self._next_client, self, now_s, is_reserve=is_reserve)
@@ -56,6 +58,15 @@ class Hub:
         if taken >= self.limits.clients:
             session.fail("too-many-connections", f"{taken} clients are connected, and no more are taken")
         return session
+
+    def _make_room(self) -> None:
+        """If all places are taken, the operators' too: who sits there and has not shown that he is one gives way, the oldest first."""
+        places = [session for session in self._sessions.values() if not session.closing]
+        if len(places) >= self.limits.clients:
+            strangers = [session for session in places if session.is_stranger]
+            for session in strangers[:1]:
+                session.fail("too-many-connections", "this place is for operators: <stop/>, or hello with such a name, was expected at once")
+                self._evicted.append(session.client)
 
     def close(self, session: Session) -> None:
         """The connection is gone."""
@@ -94,7 +105,8 @@ class Hub:
 
     def tick(self, now_s: float) -> Iterable[int]:
         """Look after manners and rates, some times a second; the clients who have something to be sent."""
-        touched: dict[int, None] = {}
+        touched: dict[int, None] = dict.fromkeys(self._evicted)
+        self._evicted.clear()
         self._hand_out(self._channels.late(now_s), touched)
         if any(until_s <= now_s for until_s in self._interest.values()):
             self._interest = {topic: until_s for topic, until_s in self._interest.items() if until_s > now_s}

@@ -32,6 +32,7 @@ class ClientProtocol(asyncio.Protocol):
         self._is_full = False
         self._at_eof = False
         self._is_ending = False
+        self._discarded = 0  # bytes since the end began
         self._fd = -1
         self._before: tuple[Sized, Sized] = ((), ())  # what stands before a value that is sent at once
 
@@ -57,6 +58,9 @@ class ClientProtocol(asyncio.Protocol):
 
     def data_received(self, data: bytes) -> None:
         """Bytes: taken in slices, so that a big message of one client does not hold up the others."""
+        if self._is_ending:
+            self._discard(data)
+            return
         if self._unread:
             self._unread.extend(data[at : at + SLICE_BYTES] for at in range(0, len(data), SLICE_BYTES))
             return
@@ -91,6 +95,13 @@ class ClientProtocol(asyncio.Protocol):
         self._server.hub.close(self._session)
 
     # our own -----------------------------------------------------------------------------------------------------
+    def _discard(self, data: bytes) -> None:
+        """What comes after the end: only a stop in a flood is still heard. Who goes on and on is not read any more."""
+        self._session.receive(data, self._loop.time())
+        self._discarded += len(data)
+        if self._discarded > self._server.hub.limits.discard_bytes:
+            self._transport.pause_reading()
+
     def _read_slice(self) -> None:
         if self._transport.is_closing():
             return
@@ -99,7 +110,8 @@ class ClientProtocol(asyncio.Protocol):
         if self._unread:
             self._loop.call_soon(self._read_slice)
             return
-        self._transport.resume_reading()
+        if self._discarded <= self._server.hub.limits.discard_bytes:
+            self._transport.resume_reading()
         self._end_if_served()
 
     def flush(self) -> None:

@@ -51,6 +51,7 @@ class Session:
         self._greeted = False
         self._answered_s = now_s  # when the executive last answered: what he told before is out of date
         self._is_reserve = is_reserve
+        self._has_stopped = False
         self._outstanding = 0
         self._began_s = now_s
         self._heard_s = now_s
@@ -59,6 +60,11 @@ class Session:
     def is_waiting(self) -> bool:
         """True while an answer of the executive is outstanding."""
         return self._outstanding > 0 or self._stops.is_under_way
+
+    @property
+    def is_stranger(self) -> bool:
+        """True for who sits in an operator's place and has not shown that he is one."""
+        return self._is_reserve and not self._greeted and not self._has_stopped
 
     @property
     def closing(self) -> bool:
@@ -151,6 +157,7 @@ class Session:
         self.say(Hello(id=request.id, robot=robot, session=self.session, time_s=self._hub.run_s(now_s), capabilities=CAPABILITIES))
 
     def _stop(self, request: Stop | Estop) -> None:
+        self._has_stopped = True
         now = self._stops.add(request)
         if now is not None:
             self._hub.ask(self, now)
@@ -223,7 +230,7 @@ class Session:
         limits = self._limits
         if unread_bytes > limits.backlog_bytes:
             self.fail("slow-consumer", f"{unread_bytes} bytes of replies wait unread; expected at most {limits.backlog_bytes}")
-        elif not self._is_known and now_s - self._began_s >= limits.hello_s:
+        elif (not self._is_known or self.is_stranger) and now_s - self._began_s >= limits.hello_s:
             self.fail("timeout", f"expected hello within {limits.hello_s:g} s")
         elif now_s - self._heard_s >= limits.idle_s:
             self.fail("timeout", f"no byte came for {limits.idle_s:g} s; send <ping/> now and then")
