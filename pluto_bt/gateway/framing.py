@@ -38,9 +38,10 @@ class FramingError(Exception):
 
 
 class Message(msgspec.Struct, frozen=True, gc=False):
-    """One complete top-level element: what is in it, where it began in the stream, and its bytes as they came.
+    """One complete top-level element: what is in it, and where it began in the stream.
 
-    `text` is what stands beside the children; of a `mission` neither that nor the children are told: its document is in `raw`.
+    `text` is what stands beside the children. Of a `mission` neither is told: its document is in `raw`, the bytes as they came (b"" if the
+    message is plain).
     """
 
     tag: str
@@ -49,7 +50,7 @@ class Message(msgspec.Struct, frozen=True, gc=False):
     text: str
     line: int
     column: int
-    raw: bytes
+    raw: bytes = b""
 
 
 class Framer:
@@ -79,7 +80,7 @@ class Framer:
                     self._line, self._column = self._line + 1, 1
                 elif start > at:
                     self._advance(data[at:start])
-                yield Message(tag, attrib, children, "", self._line, self._column, data[start:end])
+                yield Message(tag, attrib, children, "", self._line, self._column)
                 self._column += end - start
                 self._count, self._begun, at = 0, True, end
                 continue

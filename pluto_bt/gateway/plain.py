@@ -13,7 +13,7 @@ import msgspec
 PLAIN_ATTRIBUTES, PLAIN_DEPTH = 8, 2
 _NAME = r"[A-Za-z_][A-Za-z0-9_.\-]*"
 _ATTRIBUTE = f' +({_NAME})="([ !#-%\'-;=-~]*)"'  # values of printable characters, without & and <
-_START = re.compile(f"[ \\t\\r\\n]*<({_NAME})" + f"(?:{_ATTRIBUTE}" * PLAIN_ATTRIBUTES + ")?" * PLAIN_ATTRIBUTES + " */?>")
+_FEW, _MANY = (re.compile(f"[ \\t\\r\\n]*<({_NAME})" + f"(?:{_ATTRIBUTE}" * n + ")?" * n + " */?>") for n in (4, PLAIN_ATTRIBUTES))
 _CHILD = re.compile(f"<({_NAME})>([ !-%'-;=?-~]*)</")  # nor with >: the parser knows where that may stand
 
 
@@ -32,7 +32,7 @@ Plain = tuple[str, dict[str, str], tuple[Child, ...], int, int]
 
 def take(text: str, at: int) -> Plain | None:
     """The plain element that begins at `at`, white space before it or not; None for what only the parser can tell."""
-    found = _START.match(text, at)
+    found = _FEW.match(text, at) or _MANY.match(text, at)
     if found is None:
         return None
     words, last, end = found.groups(), found.lastindex or 1, found.end()

@@ -33,6 +33,11 @@ class Gateway:
         """Where the gateway listens, None if it does not."""
         return None if self._link is None else self._link.address
 
+    @property
+    def pid(self) -> int | None:
+        """The gateway's process, None while there is none."""
+        return None if self._link is None else self._link.pid
+
     def start(self, now_s: float) -> None:
         """Spawn the process and tell the address."""
         if self._link is None:
