@@ -66,6 +66,7 @@ class Framer:
         self._depth = 0
         self._in_mission = False
         self._end: re.Pattern[bytes] | None = None  # of the message's end tag, once its start tag is complete
+        self._most = limits.message_bytes
         self._takes_plain = limits.attributes >= PLAIN_ATTRIBUTES and limits.depth >= PLAIN_DEPTH
 
     def feed(self, data: bytes) -> Iterator[Message]:
@@ -74,7 +75,7 @@ class Framer:
         text = data.decode() if self._takes_plain and data.isascii() else ""
         while at < len(data):
             plain = take(text, at) if text and self._parser is None and not self._raw else None
-            if plain is not None and self._count + plain[4] - at <= self._limits.message_bytes:
+            if plain is not None and plain[4] - at <= self._most - self._count:
                 tag, attrib, children, start, end = plain
                 if start - at == 1 and text[at] == "\n":
                     self._line, self._column = self._line + 1, 1

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, get_origin, get_type_hints
 
 import msgspec
@@ -72,6 +72,7 @@ def _row(tag: str, item: msgspec.Struct) -> str:
     return element(tag, {name: getattr(item, name) for name in item.__struct_fields__})
 
 
+@lru_cache(1024)
 def _statuses(codes: tuple[int, ...]) -> str:
     """For people: the name of each code."""
     return "".join(element("status", {"element": i, "code": code, "name": status_name(i, code)}) for i, code in enumerate(codes))
