@@ -4,10 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test fuzz lint types bench dist clean help
+.PHONY: demo test fuzz fuzz-protocol lint types bench dist clean help
 
 help:            ## what there is to make
-	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*##/  -/'
+	@grep -E '^[a-z-]+:.*##' Makefile | sed -E 's/:.*##/  -/'
 
 $(STAMP): pyproject.toml requirements-dev.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "pluto_bt needs Python 3.11 or newer; make PYTHON=python3.12 …")'
@@ -26,8 +26,12 @@ GOALS ?= 8,3;13.5,3;10.5,8;2,3.5
 test: $(STAMP)   ## set everything up and run all tests
 	$(BIN)/python -m pytest -n 2 -q
 
-fuzz: $(STAMP)   ## loader, scripts and formatter for about ten minutes, elsewhere each time
+fuzz: $(STAMP)   ## loader, scripts, formatter and the gateway's protocol for about ten minutes, elsewhere each time
 	FUZZ_FACTOR=40 $(BIN)/python -m pytest tests/fuzz -n 2 -q
+
+fuzz-protocol: $(STAMP)  ## the gateway's protocol for ten minutes under atheris, led by coverage
+	$(BIN)/pip install --quiet atheris
+	$(BIN)/python -m tests.fuzz.atheris_protocol -max_total_time=600 -rss_limit_mb=1024 -max_len=8192
 
 lint: $(STAMP)   ## ruff
 	$(BIN)/ruff check .

@@ -59,8 +59,9 @@ class Gateway:
 
     def _tell(self, link: GatewayLink) -> None:
         """What operators should know of the process."""
-        if link.restarts != self._restarts:
-            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
-        elif link.is_lost and not self._is_lost:
+        is_back = link.restarts != self._restarts
+        if (link.is_lost or is_back) and not self._is_lost:
             self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended; it is started again")
+        if is_back:
+            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
         self._restarts, self._is_lost = link.restarts, link.is_lost
