@@ -22,15 +22,22 @@ def need_mcap(asked_by: str, faults: Faults) -> bool:
     return False
 
 
-def read_box(name: str) -> Box:
-    """The black box of that name; one that was cut short by a crash is read as far as it goes, with a warning. Raises: InputError."""
+def read_box(name: str, *, needs_ticks: bool = True) -> Box:
+    """The black box of that name; one that was cut short by a crash is read as far as it goes, with a warning.
+
+    With `needs_ticks` a recording from outside, which has topics alone, is refused. Raises: InputError.
+    """
     faults = Faults()
     if need_mcap(name, faults):
         from pluto_bt.record.box import open_box
+        from pluto_bt.record.entries import WATCHED
 
         box = open_box(Path(name), name, faults)
         if box is not None and not box.file.is_whole:
             print(f"{name}: the recording was cut short; read as far as it goes (`pluto repair {name}` makes it whole)", file=sys.stderr)
+        if box is not None and needs_ticks and box.run.mode == WATCHED:
+            what, mend = f'"{name}" was recorded from outside: it has topics, but no ticks of a tree', "`pluto plot` and `pluto export` read it"
+            faults.error(Place(name), "no-ticks", what, expected="a file of `pluto run --record`", found="a file of `pluto record`", mend=mend)
     faults.raise_errors()
     assert box is not None  # else there was a fault
     return box

@@ -20,7 +20,7 @@ def main(argv: list[str]) -> int:
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_box
 
-    box = read_box(args.file)
+    box = read_box(args.file, needs_ticks=False)
     facts = facts_of(box)
     print(json.dumps(facts) if args.json else "\n".join(_lines(facts)))
     return 0
@@ -49,6 +49,9 @@ def _lines(facts: dict[str, Any]) -> list[str]:
     old = "" if facts["is_from_start"] else ", the first ticks were dropped for want of room"
     outcome = facts["result"] + (f" ({facts['reason']})" if facts["reason"] else "") or "not known: the run did not come to its end"
     ports = " ".join(f"{name}={value}" for name, value in facts["ports"].items())
+    if facts["mode"] == "watched":
+        lines = [f"{facts['file']}: {facts['bytes'] / 1e6:.2f} MB{cut}", f"  mission   {facts['mission'] or 'none'}, recorded from outside"]
+        return lines + _topic_lines(facts)
     lines = [
         f"{facts['file']}: {facts['bytes'] / 1e6:.2f} MB{cut}",
         f"  run       {facts['mission']} in {facts['world']} with {facts['platform']}, seed {facts['seed']}, {facts['mode']}",
@@ -58,5 +61,8 @@ def _lines(facts: dict[str, Any]) -> list[str]:
     lines += [f"  ports     {ports}"] if ports else []
     lines += [f"  settings  {' '.join(facts['settings'])}"] if facts["settings"] else []
     lines += [f"  {name:<36} {digest[:16]}…" for name, digest in facts["hashes"].items()]
-    lines += [f"  {name:<36} {one['messages']:>8} messages {one['bytes'] / 1e3:>10.1f} kB" for name, one in facts["topics"].items()]
-    return lines
+    return lines + _topic_lines(facts)
+
+
+def _topic_lines(facts: dict[str, Any]) -> list[str]:
+    return [f"  {name:<36} {one['messages']:>8} messages {one['bytes'] / 1e3:>10.1f} kB" for name, one in facts["topics"].items()]
