@@ -218,19 +218,13 @@ def _unreferenced(reading: Reading, known: str) -> TreeSource | None:
 
 @contextlib.contextmanager
 def no_collecting() -> Iterator[None]:
-    """No garbage collection inside: a growing mission holds no garbage, and looking for it would take as long as loading.
-
-    What was made counts as old afterwards, or the next collection of young objects would look through all of it at once.
-    """
+    """No garbage collection inside: a growing mission holds no garbage, and looking for it would take as long as loading."""
     was_on = gc.isenabled()
     gc.disable()
     try:
         yield
     finally:
         if was_on:
-            if gc.get_freeze_count() == 0:  # else somebody keeps objects frozen, and thawing would thaw his, too
-                gc.freeze()
-                gc.unfreeze()
             gc.enable()
 
 
