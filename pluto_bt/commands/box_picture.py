@@ -9,9 +9,9 @@ import numpy as np
 from pluto_bt.commands.map_picture import INK, Driven, draw_map, map_size_in
 from pluto_bt.maps.world import World
 from pluto_bt.record.box import Box
-from pluto_bt.record.curves import Curve, Lane, span_s, velocities, verdicts, work
+from pluto_bt.record.curves import ASKED, DRIVEN, GIVEN, VELOCITIES, Curve, Lane, span_s, velocities, verdicts, work
 
-CURVE_COLOURS: Final = ("#bf8700", "#8c959f", "#1f6feb")
+CURVE_COLOURS: Final = {ASKED: "#bf8700", GIVEN: "#8c959f", DRIVEN: "#1f6feb"}
 WORD_COLOURS: Final = ("#d1242f", "#bf8700", "#8250df", "#0969da", "#bc4c00", "#57606a", "#1a7f37", "#bf3989")
 ENDS: Final = {"SUCCESS": ("o", "#2da44e"), "FAILURE": ("X", "#d1242f")}
 MOST_LEAVES: Final = 14
@@ -49,9 +49,9 @@ def draw_box(path: str, box: Box, world: World, driven: Driven) -> None:
 
 
 def _draw_curves(axes: Any, curves: list[Curve], unit: str, factor: float) -> None:
-    for curve, colour in zip(curves, CURVE_COLOURS, strict=False):
+    for curve in curves:
         style = "steps-post" if curve.holds else "default"
-        axes.plot(curve.t_s, factor * curve.values, color=colour, linewidth=1.2, label=curve.label, drawstyle=style)
+        axes.plot(curve.t_s, factor * curve.values, color=CURVE_COLOURS[curve.topic], linewidth=1.2, label=VELOCITIES[curve.topic], drawstyle=style)
     axes.axhline(0.0, color=INK, linewidth=0.4)
     axes.set_ylabel(unit)
     axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=8, labelcolor=INK)

@@ -22,7 +22,7 @@ FORMATS = {"json": ".jsonl", "csv": ".csv", "xml": ".xml", "carmen": ".log"}
 def main(argv: list[str]) -> int:
     """Write the recorded values."""
     parser = Parser(prog="pluto export", description="Write the topics of a black box in the formats of other programs.")
-    parser.add_argument("file", metavar="FILE.mcap")
+    parser.add_argument("file", metavar="FILE.mcap|FILE.log", help="a black box, or a log of CARMEN")
     about = "json: a line a message (default); csv: a table a topic; xml: as the gateway sends them; carmen: odometry and scans"
     parser.add_argument("--format", choices=tuple(FORMATS), default="json", help=about)
     parser.add_argument("--topic", metavar="NAME", action="append", default=[], help="only this topic; may be repeated")

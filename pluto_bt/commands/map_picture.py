@@ -25,13 +25,17 @@ OUTLINES = 24  # outlines of the robot drawn along the path
 
 @dataclass(frozen=True)
 class Driven:
-    """What is drawn into a world: `track` (n, 3), x m, y m, theta rad; the robot's `outline_m` (k, 2); `goals` and `contacts` are points (m)."""
+    """What is drawn into a world: `track` (n, 3), x m, y m, theta rad; the robot's `outline_m` (k, 2); points (m).
+
+    `seen_m` (k, 2) stands in for the world where none is known: the ends of laser beams.
+    """
 
     title: str
     track: FloatArray
     outline_m: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     goals: Sequence[tuple[float, float]] = ()
     contacts: Sequence[tuple[float, float]] = ()
+    seen_m: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
 
 
 def draw_run(path: str, runner: Runner) -> None:
@@ -66,6 +70,7 @@ def draw_map(axes: Any, world: World, driven: Driven) -> None:
     """Draw into `axes` (matplotlib's); what a legend should tell has a label."""
     x_min, y_min, x_max, y_max = _frame(world, driven)
     _draw_world(axes, world)
+    axes.plot(driven.seen_m[:, 0], driven.seen_m[:, 1], ",", color=WALL, alpha=0.6, zorder=1)
     _draw_track(axes, driven)
     for number, (x_m, y_m) in enumerate(driven.contacts):
         axes.plot(x_m, y_m, "x", color=CONTACT, markersize=10, markeredgewidth=2.5, zorder=6, label="" if number else "contact")
@@ -78,7 +83,7 @@ def draw_map(axes: Any, world: World, driven: Driven) -> None:
 def _frame(world: World, driven: Driven) -> tuple[float, float, float, float]:
     """What the picture shows: the world, and the path if it leaves it, with a margin."""
     x_min, y_min, x_max, y_max = world.bounds_m()
-    points = driven.track[:, :2] if len(driven.track) else np.array([(x_min, y_min)])
+    points = np.vstack([driven.track[:, :2], driven.seen_m]) if len(driven.track) else np.array([(x_min, y_min)])
     if not world.files:  # the path alone
         low, high = points.min(axis=0), points.max(axis=0)
     else:

@@ -19,7 +19,7 @@ ENDINGS = (".png", ".svg")
 def main(argv: list[str]) -> int:
     """Draw path, speeds, verdicts and leaves."""
     parser = Parser(prog="pluto plot", description="Draw a recorded run: its path, its speeds, what held the robot, which leaves worked.")
-    parser.add_argument("file", metavar="FILE.mcap")
+    parser.add_argument("file", metavar="FILE.mcap|FILE.log", help="a black box, or a log of CARMEN")
     parser.add_argument("--output", metavar="FILE.png|svg", help="where to (default: FILE.png, beside the recording)")
     parser.add_argument("--world", metavar="W", help="draw it into this world or map, not into the one of the recording")
     args = parser.parse_args(argv)
@@ -44,14 +44,18 @@ def seen_from_above(box: Box, asked: str | None) -> tuple[World, Driven]:
     import numpy as np
 
     from pluto_bt.commands.map_picture import Driven
-    from pluto_bt.record.curves import goals_of, track_of
+    from pluto_bt.record.curves import goals_of, seen_of, track_of
+    from pluto_bt.record.entries import WATCHED
 
     world, outline = _surroundings(box, asked)
     result, run = box.result, box.run
     reason = f" ({result['reason']})" if result.get("reason") else ""
-    title = f"{Path(run.mission).name or 'recorded'} in {world.name or 'no world'}: {result.get('result') or 'its end is not known'}{reason}"
+    where = f" in {world.name}" if world.name else ""
+    end = "" if run.mode == WATCHED else f": {result.get('result') or 'its end is not known'}{reason}"
     contacts = [(contact["x_m"], contact["y_m"]) for contact in result.get("contacts", ())]
-    return world, Driven(title, track_of(box), np.array(outline).reshape(-1, 2), goals_of(box), contacts)
+    seen_m = np.zeros((0, 2)) if world.files else seen_of(box)
+    title = f"{Path(run.mission).name or 'recorded'}{where}{end}"
+    return world, Driven(title, track_of(box), np.array(outline).reshape(-1, 2), goals_of(box), contacts, seen_m)
 
 
 def _surroundings(box: Box, asked: str | None) -> tuple[World, list[tuple[float, float]]]:

@@ -8,11 +8,14 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from pluto_bt.blackboard.codes import CommandType, MotionCommand
-from pluto_bt.blackboard.messages import ActuatorState, FloatArray, Pose
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, LaserPose, LaserScan, Pose
 from pluto_bt.record.box import Box
 from pluto_bt.record.entries import STATUS_OF_LETTER, Posted
 from pluto_bt.record.story import leaves
 
+SCAN, LASER = "sick/scan", "Localization/Laser_Pose"
+NO_RETURN_M: Final = 79.0  # the lasers of our logs say 80 m and more for nothing met
+LEVEL: Final = 0.02  # sine of the tilt
 POSE, ASKED, GIVEN, DRIVEN = "Localization/Pose", "drive/command", "ATRV2/Drive/Command", "ATRV2/Drive/Raw"
 VELOCITIES: Final = {ASKED: "asked of the drive", GIVEN: "given to the base", DRIVEN: "driven"}
 LINKS: Final = ("motion", "avoidance", "drive", "filter")
@@ -20,9 +23,9 @@ AMENDED_WITHIN_S: Final = 1.0  # a goal so soon after the last one is the same o
 
 
 class Curve(NamedTuple):
-    """One value over time; `holds`: it stays as it is until the next."""
+    """One value of a topic over time; `holds`: it stays as it is until the next."""
 
-    label: str
+    topic: str
     t_s: FloatArray
     values: FloatArray
     holds: bool
@@ -52,6 +55,21 @@ def track_of(box: Box) -> FloatArray:
     return np.array(poses, dtype=np.float64).reshape(-1, 3)
 
 
+def seen_of(box: Box, most: int = 400) -> FloatArray:
+    """(n, 2) m: where the beams of up to `most` level scans ended, all beams but those that met nothing."""
+    samples = box.samples([SCAN, LASER])
+    lasers = {sample.value.stamp_s: sample.value.pose for sample in samples[LASER] if isinstance(sample.value, LaserPose)}
+    scans = [sample.value for sample in samples[SCAN] if isinstance(sample.value, LaserScan) and sample.value.stamp_s in lasers]
+    ends = [np.zeros((0, 2))]
+    for scan in scans[:: max(1, len(scans) // most)]:
+        laser = lasers[scan.stamp_s]
+        met = (scan.ranges_m > 0.0) & (scan.ranges_m < np.max(scan.ranges_m)) & (scan.ranges_m < NO_RETURN_M)
+        if max(abs(np.sin(laser[4])), abs(np.sin(laser[5]))) < LEVEL:
+            angles = laser[3] + scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
+            ends.append((laser[:2] + scan.ranges_m[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]))[met])
+    return np.vstack(ends)
+
+
 def goals_of(box: Box) -> list[tuple[float, float]]:
     """The places that trees sent the robot to, each once."""
     goals: list[tuple[float, float]] = []
@@ -76,10 +94,10 @@ def velocities(box: Box, which: int) -> list[Curve]:
     """
     samples = box.samples(VELOCITIES)
     curves = []
-    for topic, label in VELOCITIES.items():
+    for topic in VELOCITIES:
         known = [(sample.written_s, sample.value) for sample in samples[topic] if isinstance(sample.value, ActuatorState)]
         values = np.array([np.nan if topic == ASKED and not _says(value, which) else value.velocity[which] for _, value in known])
-        curves.append(Curve(label, np.array([written_s for written_s, _ in known]), values, holds=topic != DRIVEN))
+        curves.append(Curve(topic, np.array([written_s for written_s, _ in known]), values, holds=topic != DRIVEN))
     return [curve for curve in curves if np.isfinite(curve.values).any()]
 
 

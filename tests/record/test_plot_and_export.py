@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import gzip
 import json
 import math
 from pathlib import Path
@@ -13,12 +14,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from drivers.carmen_log import BadLine, Odometry, Scan, read_log
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.cli import main
+from pluto_bt.commands.boxes import read_box
 from pluto_bt.record.box import Box, open_box
-from pluto_bt.record.curves import Lane, goals_of, track_of, velocities, verdicts, work
+from pluto_bt.record.curves import VELOCITIES, Lane, goals_of, seen_of, track_of, velocities, verdicts, work
 from pluto_bt.scenario import Play, Run
 from pluto_bt.source import Faults
+from tests.shared_data import shared_file
 
 MISSION = """<root BTCPP_format="4"><BehaviorTree ID="m"><Sequence><GoTo name="out" goal="4;0"/>
   <Timeout msec="1500"><GoTo name="too far" goal="9;3"/></Timeout></Sequence></BehaviorTree></root>"""
@@ -53,7 +57,7 @@ def test_the_path_the_goals_and_the_speeds_are_those_of_the_run(recording: tuple
     track = track_of(box)
     assert np.hypot(*(track[-1, :2] - run.final_pose[:2])) < 0.05 and len(track) > 80
     assert goals_of(box) == [(4.0, 0.0), (9.0, 3.0)]
-    curves = {curve.label: curve for curve in velocities(box, 0)}
+    curves = {VELOCITIES[curve.topic]: curve for curve in velocities(box, 0)}
     assert set(curves) == {"asked of the drive", "given to the base", "driven"}
     way_m = float(np.sum(np.abs(curves["driven"].values[1:]) * np.diff(curves["driven"].t_s)))
     assert way_m == pytest.approx(run.distance_m, rel=0.05)
@@ -134,3 +138,66 @@ def test_a_log_of_carmen_has_the_scans_where_the_laser_was(recording: tuple[Path
             assert x + ahead_m * math.cos(theta) == pytest.approx(12.0, abs=0.1)
         assert math.hypot(robot[0] - x, robot[1]) < 1.0
     assert sum(line[0] == "ODOM" for line in lines) > 300
+
+
+def test_a_log_of_carmen_is_read_as_it_was_written(recording: tuple[Path, Run], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log, box = tmp_path / "a.log", opened(recording[0])
+    assert main(["export", str(recording[0]), "--format", "carmen", "--output", str(log)]) == 0
+    (tmp_path / "b.log.gz").write_bytes(gzip.compress(log.read_bytes()))
+    again = read_box(str(tmp_path / "b.log.gz"), needs_ticks=False)
+    scans, before = ([sample.value for sample in one.samples(["sick/scan"])["sick/scan"]] for one in (again, box))
+    begin_s = float(log.read_text(encoding="utf-8").split(maxsplit=8)[7])
+    assert len(scans) > 30
+    for scan in scans:
+        was = next(one for one in before if one.stamp_s == pytest.approx(scan.stamp_s + begin_s, abs=1e-5))
+        assert np.allclose(scan.ranges_m, was.ranges_m, atol=6e-4) and scan.angle_step_rad == pytest.approx(was.angle_step_rad, rel=0.01)
+    assert np.hypot(*(track_of(again)[-1, :2] - track_of(box)[-1, :2])) < 0.5, "the laser stands ahead of the robot's middle"
+    assert np.percentile(np.abs(seen_of(again)[:, 0]), 99) < 12.2, "what was seen is the hall"
+    for command in (["info"], ["plot"], ["export", "--topic", "sick/scan", "--format", "csv"]):
+        assert main([command[0], str(log), *command[1:]]) == 0
+    assert main(["replay", str(log)]) == 2 and "topics, but no ticks" in capsys.readouterr().err
+
+
+LINES = [
+    ("ODOM 1 2 0.5 0.25 0.1 0 10.5 host 0.5", Odometry(10.5, (1.0, 2.0, 0.5), (0.25, 0.1))),
+    ("FLASER 3 1 2 81.83 4 5 0.5 6 7 0.25 11 host 1", Scan(11.0, -math.pi / 2, math.pi / 2, (1.0, 2.0, 81.83), (4.0, 5.0, 0.5), (6.0, 7.0, 0.25))),
+    ("FLASER 180" + 180 * " 1" + " 0 0 0 0 0 0 11 host 1", Scan(11.0, -math.pi / 2, math.radians(1), 180 * (1.0,), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))),
+    ("ROBOTLASER1 0 -1.5 3 0.75 50 0.01 0 2 1.5 2.5 1 9 1 2 3 4 5 6 0.3 0.1 0 0 0 12 host 2",
+     Scan(12.0, -1.5, 0.75, (1.5, 2.5), (1.0, 2.0, 3.0), (4.0, 5.0, 6.0))),
+    ("PARAM robot_max_t_vel 0.5 nohost 0", None),
+    ("# message formats defined: PARAM SYNC ODOM FLASER", None),
+    ("", None),
+    ("ODOM 1 2 0.5 0.25 0.1 10.5 host 0.5", BadLine(1, "ODOM with x y theta tv rv accel, time, host, time", "5 numbers in place of 6")),
+    ("ODOM 1 2 x 0 0 0 10.5 host 0.5", BadLine(1, "ODOM with x y theta tv rv accel, time, host, time", "could not convert string to float: 'x'")),
+    ("FLASER 9999999999 1", BadLine(1, "FLASER with n, n ranges, two poses, time, host, time", "9999999999 beams")),
+    ("FLASER", BadLine(1, "FLASER with n, n ranges, two poses, time, host, time", "0 words")),
+    ("ODOM nan 2 0.5 0.25 0.1 0 10.5 host 0.5", BadLine(1, "ODOM with x y theta tv rv accel, time, host, time", "a number that is not finite")),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("line", "record"), LINES)
+def test_lines_of_carmen(line: str, record: object) -> None:
+    (found,) = [*read_log([line])] or [None]
+    if isinstance(found, Scan) and isinstance(record, Scan):
+        assert found.angle_step_rad == pytest.approx(record.angle_step_rad)
+        found = found._replace(angle_step_rad=record.angle_step_rad)
+    assert found == record
+
+
+def test_a_bad_log_is_told_line_by_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "a.log").write_text("ODOM 1 2 0 0 0 0 5 h 5\nODOM 1\nODOM 3 2 0 0 0 0 4 h 4\n", encoding="utf-8")
+    assert main(["info", str(tmp_path / "a.log")]) == 0
+    out, err = capsys.readouterr()
+    assert "a.log:2:1: warning: this line of the log makes no sense" in err and "Localization/Dead-Reckoning" in out
+    (tmp_path / "b.log").write_text("hello\n", encoding="utf-8")
+    (tmp_path / "c.log.gz").write_text("hello\n", encoding="utf-8")
+    for name, told in (("b.log", "is no log of CARMEN"), ("c.log.gz", "cannot read"), ("none.log", "cannot read")):
+        assert main(["plot", str(tmp_path / name)]) == 2
+        assert told in capsys.readouterr().err
+
+
+def test_logs_of_real_robots_are_read(capsys: pytest.CaptureFixture[str]) -> None:
+    for path in sorted(shared_file("data", "carmen_corrected").glob("*.gz"))[:2]:
+        assert main(["info", str(path), "--json"]) == 0
+        facts = json.loads(capsys.readouterr().out)
+        assert facts["topics"]["sick/scan"]["messages"] > 100 and facts["topics"]["Localization/Dead-Reckoning"]["messages"] > 1000
