@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test fuzz fuzz-protocol lint types bench dist clean help
+.PHONY: demo test fuzz fuzz-by-coverage lint types bench dist clean help
 
 help:            ## what there is to make
 	@grep -E '^[a-z-]+:.*##' Makefile | sed -E 's/:.*##/  -/'
@@ -26,12 +26,18 @@ GOALS ?= 8,3;13.5,3;10.5,8;2,3.5
 test: $(STAMP)   ## set everything up and run all tests
 	$(BIN)/python -m pytest -n 2 -q
 
-fuzz: $(STAMP)   ## loader, scripts, formatter and the gateway's protocol for about ten minutes, elsewhere each time
+fuzz: $(STAMP)   ## loader, scripts and formatter for about ten minutes, elsewhere each time, then led by coverage
 	FUZZ_FACTOR=40 $(BIN)/python -m pytest tests/fuzz -n 2 -q
+	$(MAKE) fuzz-by-coverage FUZZ_SECONDS=300
 
-fuzz-protocol: $(STAMP)  ## the gateway's protocol for ten minutes under atheris, led by coverage
-	$(BIN)/pip install --quiet atheris
-	$(BIN)/python -m tests.fuzz.atheris_protocol -max_total_time=600 -rss_limit_mb=1024 -max_len=8192
+fuzz-by-coverage: $(STAMP)  ## the same led by coverage (atheris), FUZZ_SECONDS each; what is learnt stays in out/fuzz
+	$(BIN)/pip install --quiet 'atheris>=3'
+	@mkdir -p out/fuzz/missions out/fuzz/scripts out/fuzz/protocol
+	$(BIN)/python -m tests.fuzz.by_coverage missions out/fuzz/missions -max_total_time=$(FUZZ_SECONDS)
+	$(BIN)/python -m tests.fuzz.by_coverage scripts out/fuzz/scripts -max_total_time=$(FUZZ_SECONDS)
+	$(BIN)/python -m tests.fuzz.by_coverage protocol out/fuzz/protocol -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024
+
+FUZZ_SECONDS ?= 30
 
 lint: $(STAMP)   ## ruff
 	$(BIN)/ruff check .

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable
 from functools import cache, lru_cache
 from typing import Any, get_origin, get_type_hints
@@ -13,9 +14,8 @@ from pluto_bt.blackboard.messages import FVectorState, LaserScan, Message
 from pluto_bt.gateway.xml_text import element, escape, numbers, scalar
 from pluto_bt.runtime.parameters import unit_of
 
-_WIRE_NAMES: dict[type[Message], dict[str, str]] = {LaserScan: {"angle_min_rad": "angle_min", "angle_step_rad": "angle_step", "ranges_m": "ranges"}}
-_ROW_NAMES = {"nodes": "node", "modules": "module"}
-_DIGITS = bytes(ord(str(min(i, 9))) for i in range(256))
+WIRE_NAMES: dict[type[Message], dict[str, str]] = {LaserScan: {"angle_min_rad": "angle_min", "angle_step_rad": "angle_step", "ranges_m": "ranges"}}
+ROW_NAMES = {"nodes": "node", "modules": "module"}
 
 
 def body_of(value: Message) -> str:
@@ -34,7 +34,7 @@ def value_line(topic: str, seq: int, stamp_s: float, age_s: float, body: str, *,
 
 def fields_of(kind: type[Message]) -> tuple[dict[str, str], ...]:
     """Name on the wire, type and unit of every field, for `describe`."""
-    names = _WIRE_NAMES.get(kind, {}) | _ROW_NAMES
+    names = WIRE_NAMES.get(kind, {}) | ROW_NAMES
     hints = get_type_hints(kind)
     fields = [name for name in kind.__struct_fields__ if name != "stamp_s"]
     told = [name for name in fields if not (kind is LaserScan and name == "count")]
@@ -47,20 +47,20 @@ Write = Callable[[Any], str]
 @cache
 def _plan(kind: type[Message]) -> tuple[tuple[str, Write], ...]:
     """For each field of a message that is told: its name, and how it is written."""
-    names, hints = _WIRE_NAMES.get(kind, {}), get_type_hints(kind)
+    names, hints = WIRE_NAMES.get(kind, {}), get_type_hints(kind)
     told = [name for name in kind.__struct_fields__ if name != "stamp_s" and not (kind is LaserScan and name == "count")]
     return tuple((name, _writer(names.get(name, name), hints[name], is_optional=kind is FVectorState)) for name in told)
 
 
 def _writer(name: str, hint: Any, *, is_optional: bool) -> Write:
     """How a field of this type is written; an optional text is left out if it is empty."""
-    if name in _ROW_NAMES:
-        tag = _ROW_NAMES[name]
+    if name in ROW_NAMES:
+        tag = ROW_NAMES[name]
         return lambda rows: "".join([_row(tag, row) for row in rows])
     if hint is str:
         return lambda text: f"<{name}>{escape(text)}</{name}>" if text or not is_optional else ""
-    if hint is bytes:  # the cells of a map: one digit each
-        return lambda cells: f"<{name}>{cells.translate(_DIGITS).decode()}</{name}>"
+    if hint is bytes:
+        return lambda data: f"<{name}>{base64.b64encode(data).decode()}</{name}>"
     if hint in (bool, int, float):
         return lambda value: f"<{name}>{scalar(value)}</{name}>"
     if get_origin(hint) is tuple:

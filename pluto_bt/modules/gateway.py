@@ -19,7 +19,7 @@ class Gateway:
         self._say = context.say
         self._restarts, self._is_lost, self._trouble = 0, False, ""
         audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
-        link = GatewayLink(GatewayPort(context), options.gateway or Address(), options.gateway_access, audit=audit)
+        link = GatewayLink(GatewayPort(context), options.gateway or Address(), options.gateway_access, options.robot.gateway, audit)
         self._link: GatewayLink | None = link
         try:
             link.listen()

@@ -23,6 +23,15 @@ PIECES = [
 streams = st.lists(st.sampled_from(PIECES) | st.binary(max_size=6), max_size=40).map(b"".join)
 
 
+def survives(data: bytes) -> None:
+    """These bytes, cut where the first one says, are answered as uncut ones are."""
+    whole, pieces = Play(), Play()
+    cut = data[0] if data else 0
+    whole.feed([data[1:]])
+    pieces.feed([data[1 : 1 + cut], data[1 + cut :]])
+    assert whole.heard() == pieces.heard()
+
+
 @given(streams, st.lists(st.integers(1, 300), max_size=12))
 @effort(600)
 def test_any_bytes_are_answered_in_bounds(stream: bytes, cuts: list[int]) -> None:
