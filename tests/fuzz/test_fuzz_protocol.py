@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -30,6 +31,14 @@ def survives(data: bytes) -> None:
     whole.feed([data[1:]])
     pieces.feed([data[1 : 1 + cut], data[1 + cut :]])
     assert whole.heard() == pieces.heard()
+
+
+FOUND = [b'\"\n<params op="set" rev="1"><p <ping/>name="<describe/>a">1<![CDATA[a">1</p></\xf0arams><</\xf0arams><why a\'1\'/>=lo <modules/>']
+
+
+@pytest.mark.parametrize("data", FOUND)
+def test_what_was_found_stays_mended(data: bytes) -> None:
+    survives(data)
 
 
 @given(streams, st.lists(st.integers(1, 300), max_size=12))
