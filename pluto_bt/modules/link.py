@@ -16,13 +16,7 @@ RELEASE = int(MotionCommand.RELEASE)
 
 def newest(context: Context, topic: str) -> Callable[[], Any]:
     """A fast way to ask for the newest value of a topic, None without one."""
-    read = context.board.reader(topic)
-
-    def value() -> Message | None:
-        sample = read()
-        return None if sample is None else sample.value
-
-    return cast(Callable[[], Any], value)
+    return cast(Callable[[], Any], context.board.value_reader(topic))
 
 
 class Link:
