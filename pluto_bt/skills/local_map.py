@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, along_line, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
@@ -42,6 +43,7 @@ class LocalMap:
         self.far_cells = parameters.wide_half_width_m / self.cell_m
         n = math.ceil(HERE_M / self.cell_m)
         self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
+        self._fan = Fan()
         self.forget((0.0, 0.0, 0.0))
 
     def forget(self, middle: Planar) -> None:
@@ -110,7 +112,7 @@ class LocalMap:
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
         """
         self._follow(laser)
-        angles: Array = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m), dtype=np.float64)
+        angles, _, _ = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
         x, y = self.place(laser[0], laser[1])
         cell = self.cell_m
         if abs(tilt_rad) < LEVEL_RAD:

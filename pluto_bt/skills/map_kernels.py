@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.kernel import inline_kernel, kernel
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.int8]
@@ -24,6 +24,7 @@ LEVEL, STANDS, HOLE = 1, 2, 3  # what a beam that looks down may find
 AGAIN_S, FORGOTTEN_S = 0.4, 6.0  # what lies low has to be seen again in the same cell: who walks has gone on by then
 TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
 SAMPLE = 0.7  # cells between two samples of a beam
+ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middle of one to that of the next
 
 
 @kernel
@@ -125,26 +126,32 @@ def clearances(
     """
     rows, columns = i1 - i0, j1 - j0
     near = np.full((rows + 2, columns + 2), np.float32(most))
-    diagonal = np.float32(1.4142)
-    one = np.float32(1.0)
     for a in range(1, rows + 1):
-        for b in range(1, columns + 1):
-            i, j = i0 + a - 1, j0 + b - 1
-            if evidence[i, j] > 0 or low_s[i, j] > oldest_s:
-                near[a, b] = 0.0
-            else:
-                near[a, b] = min(
-                    min(near[a, b], near[a - 1, b] + one), min(near[a, b - 1] + one, min(near[a - 1, b - 1], near[a - 1, b + 1]) + diagonal)
-                )
+        row, stands, low = near[a, 1 : columns + 1], evidence[i0 + a - 1, j0:j1], low_s[i0 + a - 1, j0:j1]
+        for b in range(columns):
+            if stands[b] > 0 or low[b] > oldest_s:
+                row[b] = 0.0
+        spread_over(row, near[a - 1])
+        for b in range(1, columns):
+            row[b] = min(row[b], row[b - 1] + ACROSS)
     for a in range(rows, 0, -1):
-        for b in range(columns, 0, -1):
-            value = min(near[a, b], min(near[a + 1, b] + one, min(near[a, b + 1] + one, min(near[a + 1, b + 1], near[a + 1, b - 1]) + diagonal)))
-            near[a, b] = value
+        row = near[a, 1 : columns + 1]
+        spread_over(row, near[a + 1])
+        for b in range(columns - 2, -1, -1):
+            row[b] = min(row[b], row[b + 1] + ACROSS)
     first_i, last_i = 0 if i0 == 0 else keep, rows if i1 == evidence.shape[0] else rows - keep
     first_j, last_j = 0 if j0 == 0 else keep, columns if j1 == evidence.shape[1] else columns - keep
     for a in range(first_i, last_i):
         for b in range(first_j, last_j):
             out[i0 + a, j0 + b] = near[a + 1, b + 1]
+
+
+@inline_kernel
+def spread_over(row: Floats, beside: Floats) -> None:
+    """Carry the distances of the row `beside`, which has a cell more at both ends, over to a row; apart from the sweep along it, so that it is vectorised."""
+    before, at, after = beside[:-2], beside[1:-1], beside[2:]
+    for b in range(row.shape[0]):
+        row[b] = min(min(row[b], at[b] + ACROSS), min(before[b], after[b]) + DIAGONALLY)
 
 
 @kernel

@@ -88,10 +88,27 @@ def put(
 
 
 @kernel
+def place_cones(axes: Array, leaves_m: Array, heard_m: Array, rounds: int, x_m: float, y_m: float, theta_rad: float, cones: Array) -> None:
+    """The cones of a round as `hear_cones` takes them, for the robot at (x, y, theta).
+
+    Args:
+        axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
+        heard_m: (ROUNDS, k) the last rounds, the newest one last, 0 = deaf. rounds: how many of them there have been; before the last, nothing clears.
+    """
+    c, s, newest = math.cos(theta_rad), math.sin(theta_rad), heard_m.shape[0] - 1
+    for k in range(axes.shape[0]):
+        cones[k, 0], cones[k, 1] = x_m + c * axes[k, 0] - s * axes[k, 1], y_m + s * axes[k, 0] + c * axes[k, 1]
+        cones[k, 2], cones[k, 3], cones[k, 5] = axes[k, 2] + theta_rad, max(heard_m[newest, k], leaves_m[k]), leaves_m[k]
+        cones[k, 4] = heard_m[newest, k] if rounds > newest else 0.0
+        for r in range(newest):
+            cones[k, 4] = min(cones[k, 4], heard_m[r, k])
+
+
+@kernel
 def hear_cones(
     seen: Array, heard: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float,
     stamp_s: float, most_m: float, fleeting_s: float,
-) -> None:  # fmt: skip
+) -> int:  # fmt: skip
     """Take a round of the sonar ring.
 
     Args:
@@ -100,23 +117,26 @@ def hear_cones(
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
     where it was free a moment ago came by itself and may go by itself: it counts as so much older, `fleeting_s`, from the start.
+    Returns: how many cones are marked.
     """
-    opening = math.tan(half_cone_rad)
+    opening, touching = math.tan(half_cone_rad), 0
     for clears in (1, 0):
         for k in range(cones.shape[0]):
             x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
             if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
                 continue
             if clears == 0 and echo_m <= cones[k, 5]:
-                cones[k, 3] = TOUCHING_M
+                cones[k, 3], touching = TOUCHING_M, touching + 1
                 continue
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
             row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
             for row in range(row_0, row_1):
-                for column in range(column_0, column_1):
-                    dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
+                dy = corner_y_m + (row + 0.5) * CELL_M - y_m
+                first, last = columns_of(c, s, dy, opening, corner_x_m - x_m)
+                for column in range(max(column_0, first), min(column_1, last)):
+                    dx = corner_x_m + (column + 0.5) * CELL_M - x_m
                     ahead_m, aside_m, away_m = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(dx * dx + dy * dy)
                     if ahead_m <= 0.0 or aside_m > ahead_m * opening:
                         continue
@@ -127,6 +147,21 @@ def hear_cones(
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
                         put_s = stamp_s - fleeting_s if heard[row, column] > stamp_s - LATELY_S else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
+    return touching
+
+
+@inline_kernel
+def columns_of(c: float, s: float, dy_m: float, opening: float, corner_m: float) -> tuple[int, int]:
+    """The columns of a row that may lie in a cone along (c, s), as a range, a cell too many at both ends; `corner_m` and the row seen from its apex."""
+    low_m, high_m = -1e6, 1e6
+    left, right = s + opening * c, s - opening * c  # the slopes of the cone's edges: dx * left >= dy * (c - opening * s), and the other way round
+    if abs(left) > 1e-9:
+        edge_m = dy_m * (c - opening * s) / left
+        low_m, high_m = (edge_m, high_m) if left > 0.0 else (low_m, edge_m)
+    if abs(right) > 1e-9:
+        edge_m = dy_m * (c + opening * s) / right
+        low_m, high_m = (low_m, min(high_m, edge_m)) if right > 0.0 else (max(low_m, edge_m), high_m)
+    return cell_of(low_m, corner_m) - 1, cell_of(high_m, corner_m) + 2
 
 
 @inline_kernel
@@ -143,7 +178,6 @@ def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: flo
     """Whether the laser knows of something in the cone about as near as the echo."""
     x_m, y_m, reach_m, opening = cones[k, 0], cones[k, 1], cones[k, 3] + 2.0 * CONE_SLACK_M, math.tan(half_cone_rad)
     c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
-    found = False
     column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, stamps.shape[2])
     row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, stamps.shape[1])
     for row in range(row_0, row_1):
@@ -152,8 +186,8 @@ def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: flo
                 dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
                 ahead_m, aside_m = c * dx + s * dy, abs(c * dy - s * dx)
                 if dx * dx + dy * dy < reach_m * reach_m and aside_m < ahead_m * opening + CELL_M:
-                    found = True
-    return found
+                    return True
+    return False
 
 
 @kernel

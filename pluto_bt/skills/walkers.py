@@ -68,6 +68,8 @@ class WalkerWatch:
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
         rows = self.rows(now_s)
+        if not len(rows):
+            return NO_BODY
         seen = rows[rows[:, IN_VIEW] == 1.0]
         return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
 
@@ -112,3 +114,4 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, COLUMNS))
+NO_BODY: Array = np.zeros((0, 3))
