@@ -5,7 +5,6 @@ All calls are thread-safe. A lock guards only the bookkeeping; values are frozen
 
 from __future__ import annotations
 
-import bisect
 import math
 import threading
 from collections import deque
@@ -49,7 +48,9 @@ class Publisher:
 
 def enclosing(samples: tuple[Sample, ...], stamp_s: float) -> tuple[Sample, Sample] | None:
     """The two samples, of those oldest first, whose stamps enclose `stamp_s`, for interpolation; None if it lies outside."""
-    i = bisect.bisect_left(samples, stamp_s, key=_stamp)
+    i = len(samples)
+    while i and samples[i - 1].value.stamp_s >= stamp_s:  # what is asked for is nearly always among the newest
+        i -= 1
     if i < len(samples) and samples[i].value.stamp_s == stamp_s:
         return samples[i], samples[i]
     return (samples[i - 1], samples[i]) if 0 < i < len(samples) else None
@@ -219,7 +220,3 @@ class Blackboard:
                 self._tap(index, sample)
         for wake in self._watchers[index]:
             wake()
-
-
-def _stamp(sample: Sample) -> float:
-    return sample.value.stamp_s
