@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
-from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, along_line, clearances, mark_ground, mark_level, under_points
+from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 
@@ -82,11 +82,9 @@ class LocalMap:
         """Distance from a point to the nearest thing that stands, at most `wide_half_width_m`."""
         return float(self.clearance[self.cell(x_m, y_m)]) * self.cell_m
 
-    def cells(self, points: Array) -> tuple[Indices, Indices]:
-        """The cells of points (n, 2), as indices of a grid; the nearest one of the edge for points outside."""
-        i = np.floor(points[:, 0] / self.cell_m).astype(np.intp) - self.i0
-        j = np.floor(points[:, 1] / self.cell_m).astype(np.intp) - self.j0
-        return np.clip(i, 0, CELLS - 1), np.clip(j, 0, CELLS - 1)
+    def is_seen_free(self, points: Array) -> bool:
+        """Whether the cells of all points (n, 2) were seen free; of points outside the nearest cell of the edge."""
+        return all_free(self.evidence, points, self.cell_m, self.i0, self.j0)
 
     def clearances_m(self, points: Array) -> Array:
         """`clearance_m` of points (n, 2)."""
@@ -142,6 +140,7 @@ class LocalMap:
         self.refresh(0.0)
         self.clearances_m(np.zeros((1, 2)))
         self.clearances_between_m((0.0, 0.0), (1.0, 0.0))
+        self.is_seen_free(np.zeros((1, 2)))
         self.forget((0.0, 0.0, 0.0))
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:

@@ -175,3 +175,14 @@ def under_points(grid: Floats, points: Array, cell_m: float, i0: int, j0: int) -
         at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
         out[k] = grid[min(max(at_i, 0), most), min(max(at_j, 0), most)]
     return out
+
+
+@kernel
+def all_free(evidence: Bytes, points: Array, cell_m: float, i0: int, j0: int) -> bool:
+    """Whether all cells under points (n, 2) in metres were seen free; beyond the edge the nearest cell."""
+    most = evidence.shape[0] - 1
+    for k in range(points.shape[0]):
+        at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
+        if evidence[min(max(at_i, 0), most), min(max(at_j, 0), most)] >= 0:
+            return False
+    return True
