@@ -8,7 +8,7 @@ from typing import Any, cast
 from pluto_bt.blackboard import Publisher
 from pluto_bt.blackboard.codes import MotionCommand
 from pluto_bt.blackboard.inbox import Letter
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState
 from pluto_bt.modules.context import Context
 
 RELEASE = int(MotionCommand.RELEASE)

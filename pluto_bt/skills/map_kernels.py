@@ -148,7 +148,7 @@ def clearances(
 
 @inline_kernel
 def spread_over(row: Floats, beside: Floats) -> None:
-    """Carry the distances of the row `beside`, which has a cell more at both ends, over to a row; apart from the sweep along it, so that it is vectorised."""
+    """Carry the distances of the row `beside`, which has a cell more at both ends, over to a row. Not along it: so the loop is vectorised."""
     before, at, after = beside[:-2], beside[1:-1], beside[2:]
     for b in range(row.shape[0]):
         row[b] = min(min(row[b], at[b] + ACROSS), min(before[b], after[b]) + DIAGONALLY)

@@ -93,7 +93,7 @@ def place_cones(axes: Array, leaves_m: Array, heard_m: Array, rounds: int, x_m: 
 
     Args:
         axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
-        heard_m: (ROUNDS, k) the last rounds, the newest one last, 0 = deaf. rounds: how many of them there have been; before the last, nothing clears.
+        heard_m: (ROUNDS, k) the last rounds, the newest one last, 0 = deaf. rounds: how many there have been; with fewer nothing clears.
     """
     c, s, newest = math.cos(theta_rad), math.sin(theta_rad), heard_m.shape[0] - 1
     for k in range(axes.shape[0]):
@@ -133,10 +133,8 @@ def hear_cones(
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
             row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
             for row in range(row_0, row_1):
-                dy = corner_y_m + (row + 0.5) * CELL_M - y_m
-                first, last = columns_of(c, s, dy, opening, corner_x_m - x_m)
-                for column in range(max(column_0, first), min(column_1, last)):
-                    dx = corner_x_m + (column + 0.5) * CELL_M - x_m
+                for column in range(column_0, column_1):
+                    dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
                     ahead_m, aside_m, away_m = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(dx * dx + dy * dy)
                     if ahead_m <= 0.0 or aside_m > ahead_m * opening:
                         continue
@@ -148,20 +146,6 @@ def hear_cones(
                         put_s = stamp_s - fleeting_s if heard[row, column] > stamp_s - LATELY_S else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
     return touching
-
-
-@inline_kernel
-def columns_of(c: float, s: float, dy_m: float, opening: float, corner_m: float) -> tuple[int, int]:
-    """The columns of a row that may lie in a cone along (c, s), as a range, a cell too many at both ends; `corner_m` and the row seen from its apex."""
-    low_m, high_m = -1e6, 1e6
-    left, right = s + opening * c, s - opening * c  # the slopes of the cone's edges: dx * left >= dy * (c - opening * s), and the other way round
-    if abs(left) > 1e-9:
-        edge_m = dy_m * (c - opening * s) / left
-        low_m, high_m = (edge_m, high_m) if left > 0.0 else (low_m, edge_m)
-    if abs(right) > 1e-9:
-        edge_m = dy_m * (c + opening * s) / right
-        low_m, high_m = (low_m, min(high_m, edge_m)) if right > 0.0 else (max(low_m, edge_m), high_m)
-    return cell_of(low_m, corner_m) - 1, cell_of(high_m, corner_m) + 2
 
 
 @inline_kernel
