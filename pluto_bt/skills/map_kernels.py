@@ -117,6 +117,25 @@ def mark_ground(
 
 
 @kernel
+def changes(
+    evidence: Bytes, low_s: Floats, oldest_s: float, stands: Bytes, i0: int, i1: int, j0: int, j1: int
+) -> tuple[int, int, int, int]:  # fmt: skip
+    """Bring `stands` (1 = something stands there, or lies low) up to date in the window [i0, i1) x [j0, j1).
+
+    Returns: the smallest window that holds all that changed, i0, i1, j0, j1; with i0 >= i1 if nothing did.
+    """
+    first_i, last_i, first_j, last_j = evidence.shape[0], 0, evidence.shape[1], 0
+    for i in range(i0, i1):
+        for j in range(j0, j1):
+            is_there = evidence[i, j] > 0 or low_s[i, j] > oldest_s
+            if is_there != (stands[i, j] != 0):
+                stands[i, j] = 1 if is_there else 0
+                first_i, last_i = min(first_i, i), max(last_i, i + 1)
+                first_j, last_j = min(first_j, j), max(last_j, j + 1)
+    return first_i, last_i, first_j, last_j
+
+
+@kernel
 def clearances(
     evidence: Bytes, low_s: Floats, oldest_s: float, i0: int, i1: int, j0: int, j1: int, out: Floats, keep: int, most: float
 ) -> None:  # fmt: skip
