@@ -205,3 +205,16 @@ def all_free(evidence: Bytes, points: Array, cell_m: float, i0: int, j0: int) ->
         if evidence[min(max(at_i, 0), most), min(max(at_j, 0), most)] >= 0:
             return False
     return True
+
+
+@kernel
+def under_places(grid: Floats, points: Array, origin: tuple[float, float, float], cell_m: float) -> Array:
+    """The cells under points (n, 2) in metres, as lengths, of a grid that lies as `maps.raster.Frame` says; 0 beyond its edge."""
+    out = np.zeros(points.shape[0])
+    c, s, size_m = math.cos(origin[2]), math.sin(origin[2]), np.float32(cell_m)
+    for k in range(points.shape[0]):
+        dx, dy = points[k, 0] - origin[0], points[k, 1] - origin[1]
+        row, column = (c * dy - s * dx) / cell_m, (c * dx + s * dy) / cell_m
+        if 0.0 <= row < grid.shape[0] and 0.0 <= column < grid.shape[1]:
+            out[k] = grid[int(row), int(column)] * size_m
+    return out
