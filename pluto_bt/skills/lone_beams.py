@@ -30,8 +30,8 @@ def _believed(ranges: Array, before: Array, edges_too: bool) -> Array:
     believed = np.ones(n)
     for i in range(0 if edges_too else 1, n if edges_too else n - 1):
         range_m = ranges[i]
-        stands_back = i > 0 and not ranges[i - 1] - range_m > LONE_STEP_M  # also NaN
-        if stands_back or (i < n - 1 and not ranges[i + 1] - range_m > LONE_STEP_M):
+        right_m, left_m = ranges[i - 1] if i > 0 else np.inf, ranges[i + 1] if i < n - 1 else np.inf
+        if not (right_m - range_m > LONE_STEP_M and left_m - range_m > LONE_STEP_M):  # also NaN
             continue
         believed[i] = 0.0
         for k in range(max(0, i - BESIDE), min(before.shape[0], i + BESIDE + 1)):
