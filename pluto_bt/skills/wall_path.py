@@ -30,7 +30,8 @@ LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
 HALVINGS = 5
 LEAN_M, SPARE_M = 0.35, 0.2  # so far at most the path leans into a pocket, and from so much on that the camera is too far away
-LEANING_M = 0.7  # so far before and after
+LEANING_M = 0.6  # so far before and after …
+TOO_NEAR_M = 0.1  # … but not so far that the camera would be nearer than by this
 LEFT_RAD = (math.radians(-10.0), math.pi)  # where a wall on the left is looked for first
 
 
@@ -197,10 +198,12 @@ def _leaning(path: Array, points: Array, wish: Wish) -> Array:
     c, s = np.cos(some[:, 2:3]), np.sin(some[:, 2:3])
     camera_x, camera_y = some[:, :1] + c * x_m - s * y_m, some[:, 1:2] + s * x_m + c * y_m
     squares = (camera_x - points[:, 0]) ** 2 + (camera_y - points[:, 1]) ** 2
+    off_m = np.sqrt(squares.min(axis=1)) - away_m
     most_m = max(0.0, min(LEAN_M, wish.distance_m - wish.least_m))
-    over_m = np.clip(np.sqrt(squares.min(axis=1)) - away_m - SPARE_M, 0.0, most_m)
-    near = np.maximum(1.0 - np.abs(way_m[:, None] - way_m[::3]) / LEANING_M, 0.0)
-    lean_m = (over_m * near).max(axis=1)
+    over_m = np.clip(off_m - SPARE_M, 0.0, most_m)
+    near = np.maximum(1.0 - np.abs(way_m[::3, None] - way_m[::3]) / LEANING_M, 0.0)
+    leans_m = np.minimum((over_m * near).max(axis=1), np.maximum(off_m + TOO_NEAR_M, 0.0))
+    lean_m = np.interp(way_m, way_m[::3], leans_m)
     ahead[:, 0] -= lean_m * np.sin(ahead[:, 2])
     ahead[:, 1] += lean_m * np.cos(ahead[:, 2])
     return path
