@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -130,7 +131,7 @@ class Kept(NamedTuple):
 def kept(track: Sequence[TrackPoint], wall: WallParameters, side: str, edges: Array, distance_m: float) -> Kept:
     """How a run kept the distance, from when the camera first had it for a metre."""
     poses = [point.pose for point in track]
-    way_m = np.concatenate(([0.0], np.cumsum([math.dist(a[:2], b[:2]) for a, b in zip(poses, poses[1:], strict=False)])))
+    way_m = np.concatenate(([0.0], np.cumsum([math.dist(a[:2], b[:2]) for a, b in itertools.pairwise(poses)])))
     cameras = camera_path(poses, wall.camera_back_m, wall.camera_side_m if side == "left" else -wall.camera_side_m)
     far = np.append(np.flatnonzero(np.abs(distances(cameras, edges)[0] - distance_m) >= NEAR_M), len(poses) - 1)
     next_far = far[np.searchsorted(far, np.arange(len(poses)))]
