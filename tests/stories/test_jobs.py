@@ -98,7 +98,7 @@ def test_explore_covers_a_yard_comes_home_and_never_leaves_its_rectangle(tell: A
     run = tell(f'<Explore rectangle="{b:.2f};{h:.2f}"/>', yard.text, max_time_s=1500.0)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
     assert math.dist(run.final_pose[:2], yard.start[:2]) < 0.3 + 0.02 * run.distance_m
-    assert all(-0.1 <= p.pose[0] - yard.start[0] <= h and abs(p.pose[1] - yard.start[1]) <= b for p in run.track)
+    assert all(-1e-3 <= p.pose[0] - yard.start[0] <= h and abs(p.pose[1] - yard.start[1]) <= b for p in run.track)
     shown = run.runner.system.board.newest("map/local").value
     assert isinstance(shown, LocalMapState)
     assert yard.covered_share(shown) > 0.9
