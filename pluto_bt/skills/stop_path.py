@@ -133,7 +133,7 @@ def is_walked_to(walkers: Array, px: float, py: float, t_s: float, is_fresh: boo
     for k in range(walkers.shape[0]):
         dx, dy = walkers[k, WALKER_X] + walkers[k, DRIFT_X] * t_s - px, walkers[k, WALKER_Y] + walkers[k, DRIFT_Y] * t_s - py
         near_m = walkers[k, SPREAD_M] + walkers[k, GROWTH_MPS] * t_s + SLIM_M
-        if dx * dx + dy * dy < near_m * near_m and (walkers[k, IN_VIEW] != 0.0 or not is_fresh):
+        if not is_fresh or (walkers[k, IN_VIEW] != 0.0 and dx * dx + dy * dy < near_m * near_m):
             found = True
     return found
 
