@@ -29,8 +29,8 @@ class Approach:
         self._ring = ring
         self._rounds: list[tuple[Array, Planar, float]] = []
 
-    def look(self, ranges_m: Array, robot: Planar, stamp_s: float) -> Array:
-        """Take a round, heard from `robot`.
+    def look(self, ranges_m: Array, robot: Planar, stamp_s: float, came: Mask) -> Array:
+        """Take a round, heard from `robot`; `came`: (k,) whose echo comes from where a moment ago all was free.
 
         Returns: (n, 3) x m, y m and how far beside that, for each transducer that hears somebody come or go.
         """
@@ -39,14 +39,14 @@ class Approach:
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
         near = (ranges_m < HEAR_M) & (np.abs(first_m - ranges_m) > NEARER_M) & (ranges_m > self._ring.min_range_m)
-        return self._steady(near) if near.any() else NOTHING
+        return self._those_who_walk(near, came) if near.any() or came.any() else NOTHING
 
-    def _steady(self, near: Mask) -> Array:
-        """Those of the near ones that came evenly, own motion taken off."""
+    def _those_who_walk(self, near: Mask, came: Mask) -> Array:
+        """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came."""
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
-        moved = walked(heard_m, places, axes, near, half_rad)
+        moved = walked(heard_m, places, axes, near, half_rad) | came
         if not moved.any():
             return NOTHING
         x, y, theta = places[-1].tolist()

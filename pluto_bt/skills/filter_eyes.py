@@ -121,5 +121,5 @@ class _Ear:
             self._heard = None
             space.drop_echoes()
             return
-        space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
-        walkers.take_echoes(self._approach.look(ranges_m, at, sonar.stamp_s), sonar.stamp_s)
+        came = space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
+        walkers.take_echoes(self._approach.look(ranges_m, at, sonar.stamp_s, came), sonar.stamp_s)

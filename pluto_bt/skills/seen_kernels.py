@@ -11,6 +11,7 @@ import math
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array
+from pluto_bt.skills.sonar import Mask
 
 CELL_M = 0.05
 LEVEL, LOW = 0, 1
@@ -90,12 +91,13 @@ def put(
 @kernel
 def hear_cones(
     seen: Array, heard: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float,
-    stamp_s: float, most_m: float, fleeting_s: float,
+    stamp_s: float, most_m: float, fleeting_s: float, came: Mask,
 ) -> None:  # fmt: skip
     """Take a round of the sonar ring.
 
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
+        came: (k,) is filled: whether all of an echo's arc was heard free a moment ago, so that what is there now walks.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
@@ -114,6 +116,7 @@ def hear_cones(
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
             row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
+            on_arc, was_free = 0, 0
             for row in range(row_0, row_1):
                 for column in range(column_0, column_1):
                     dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
@@ -122,17 +125,23 @@ def hear_cones(
                         continue
                     if clears == 1:
                         if away_m < clear_m:
-                            clear_cell(seen, heard, stamps, row, column, stamp_s)
+                            clear_cell(seen, stamps, row, column, stamp_s)
+                            if aside_m < ahead_m * opening - CELL_M:  # what stands on the edge is heard now and then
+                                heard[row, column] = stamp_s
                     elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
-                        put_s = stamp_s - fleeting_s if heard[row, column] > stamp_s - LATELY_S else stamp_s
+                        is_new = heard[row, column] > stamp_s - LATELY_S
+                        on_arc, was_free = on_arc + 1, was_free + is_new
+                        put_s = stamp_s - fleeting_s if is_new else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
+            if clears == 0:
+                came[k] = on_arc > 0 and was_free == on_arc
 
 
 @inline_kernel
-def clear_cell(seen: Array, heard: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
+def clear_cell(seen: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
     """The sonar hears through a cell: what was heard there is gone, and so is what the laser saw there long ago."""
-    seen[row, column] = heard[row, column] = stamp_s
+    seen[row, column] = stamp_s
     stamps[LOW, row, column] = NEVER
     if stamps[LEVEL, row, column] < stamp_s - FRESH_S:
         stamps[LEVEL, row, column] = NEVER
