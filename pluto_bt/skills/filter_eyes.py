@@ -48,7 +48,7 @@ class FilterEyes:
         reach_m = window_m if laser else max(window_m, p.hear_m)
         self.space = SeenSpace(outline, reach_m + BEHIND_M, p.hear_m, max(0.0, p.obstacle_memory_s - p.fleeting_memory_s))
         self.walkers = WalkerWatch(p.walker_memory_s)
-        self._has_begun = False
+        self._begun_s: float | None = None
 
     @property
     def has_laser(self) -> bool:
@@ -63,13 +63,18 @@ class FilterEyes:
             self._eye.take(senses, space, self.walkers)
         if self._ear is not None:
             self._ear.take(now_s, senses, space, self.walkers)
-        space.stand(robot, 0.0 if self._has_begun else p.assumed_clear_m, now_s, now_s - p.obstacle_memory_s, window_m)
-        self._has_begun = True
+        space.stand(robot, p.assumed_clear_m if self._begun_s is None else 0.0, now_s, now_s - p.obstacle_memory_s, window_m)
+        self._begun_s = now_s if self._begun_s is None else self._begun_s
 
     def forget(self) -> None:
         """Nothing and nobody was ever seen."""
         self.space.forget()
         self.walkers.forget()
+
+    def is_anybody_about(self, now_s: float) -> bool:
+        """Whether somebody walked here lately, or has just started the robot: he may be wherever no sensor looks."""
+        is_new = self._begun_s is not None and now_s - self._begun_s < self._parameters.starter_s
+        return is_new or self.walkers.is_anybody_about(now_s)
 
     def hears(self, now_s: float) -> bool:
         """Whether the sonar, where there is one, can be trusted."""
