@@ -2,7 +2,8 @@
 
 The laser sees how the robot moved since a scan of a moment ago (`scan_match`), and that is compared with what localisation reckons with:
 the turn (`turn_trial`), the way (`way_trial`), and whether the scan fits at all. One that fits nowhere near, followed by one that fits to it,
-was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is.
+was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is. People who stand round it may hide
+so much that a scan looks like that too; so the place before is kept, and when it comes into view again, where it must be, nobody is lost.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimation.news import LOST, News
+from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep, match_scans
 from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
@@ -28,6 +29,7 @@ GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the ma
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
 MOST_PAN_RAD = 0.3  # a laser that was panned farther sees too little of the same
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
+HOME_M, HOME_RAD, HOME_SCANS = 0.1, 0.05, 3  # so near to where it must be the place before is seen, so often, by a robot that is not lost
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
@@ -70,6 +72,8 @@ class MotionCheck:
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
         self._is_elsewhere = False
+        self._home: KeyScan | None = None  # the place before the robot seemed elsewhere
+        self._at_home = 0  # scans in a row that showed it again
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._since_s = -math.inf
@@ -128,20 +132,42 @@ class MotionCheck:
         if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
             self._renew(scan)
             return
+        if self._is_carried_off and self._is_back_home(scan, first_rad, step_rad):
+            self.found()
+            self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
         match = self._best_match(key, scan, motion, first_rad, step_rad)
         self.fits = match.fits
         if match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
+            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not _is_odd(home):
+                self._is_elsewhere = False
             self._weigh(scan, key, motion, match)
             self._looked_s = stamp_s
             return
-        both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
-        is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED) and not (_is_crowded(key) or _is_crowded(scan))
-        self._is_elsewhere = is_odd and not self._is_elsewhere
+        self._is_elsewhere = not self._is_elsewhere and _is_odd(match) and not (_is_crowded(key) or _is_crowded(scan))
+        if self._is_elsewhere and not self._is_carried_off:
+            self._home = key
         self._renew(scan)
 
     def blind(self) -> None:
         """A scan came that cannot be compared: the next one is compared with the one before."""
         self._is_elsewhere = False
+
+    def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
+        """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
+        home = self._home
+        if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
+            return None
+        return self._best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad)
+
+    def _is_back_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> bool:
+        """True if one scan after the other shows the place before just where it must be: then nobody has carried the robot."""
+        match, is_home = self._seen_from_home(scan, first_rad, step_rad), False
+        if match is not None and self._home is not None and match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
+            seen = compose(compose(self._home.arm, match.step), inverse(scan.arm))
+            off_m, aside_m, off_rad = _difference(motion_between(self._home.at, scan.at).pose, seen)
+            is_home = math.hypot(off_m, aside_m) < HOME_M and abs(off_rad) < HOME_RAD
+        self._at_home = self._at_home + 1 if is_home else 0
+        return self._at_home >= HOME_SCANS
 
     def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
         """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
@@ -172,6 +198,7 @@ class MotionCheck:
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(stamp_s):
+                self._home = key
                 self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
                 self._renew(scan)
             return
@@ -211,11 +238,17 @@ class MotionCheck:
     def _lose(self, text: str) -> None:
         self._is_elsewhere = False
         if not self._is_carried_off:
-            self._is_carried_off = True
+            self._is_carried_off, self._at_home = True, 0
             self.news.append(News(LOST, text))
 
     def _renew(self, scan: KeyScan) -> None:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
+
+
+def _is_odd(match: ScanStep) -> bool:
+    """True if the scans are of two places: few points fit, and both sides differ, or hardly any fits at all."""
+    both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
+    return match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
 
 
 def _is_crowded(scan: KeyScan) -> bool:
