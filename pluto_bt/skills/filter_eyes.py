@@ -13,6 +13,7 @@ from pluto_bt.skills.approach import Approach
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.outline import Outline, Planar
 from pluto_bt.skills.scan_watch import ScanWatch
+from pluto_bt.skills.seen_kernels import CAME, SUDDEN
 from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
@@ -126,5 +127,7 @@ class _Ear:
             self._heard = None
             space.drop_echoes()
             return
-        came = space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
-        walkers.take_echoes(self._approach.look(ranges_m, at, sonar.stamp_s, came), sonar.stamp_s)
+        news = space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
+        walkers.take_echoes(self._approach.look(ranges_m, at, sonar.stamp_s, news == CAME), sonar.stamp_s)
+        if (news == SUDDEN).any():
+            walkers.doubt(sonar.stamp_s)

@@ -12,8 +12,7 @@ import numpy as np
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.sonar import Mask
-from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, hear_cones, put, see_beams, stand
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, Counts, hear_cones, put, see_beams, stand
 
 ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
 MOST_POINTS = 4000
@@ -103,12 +102,12 @@ class SeenSpace:
             believed[i] = float(is_known)
         return believed
 
-    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> Mask:
+    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> Counts:
         """Take a round of the ring.
 
         Args:
             axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
-        Returns: (k,) whose echo comes from where a moment ago all was free.
+        Returns: (k,) CAME, SUDDEN or 0: what is new about each echo.
         """
         heard_m = ranges_m * (ranges_m > sonar.min_range_m + DEAF_M)  # nearer it is deaf: it may be anywhere, and nothing is proved
         self._rounds = [*self._rounds[1 - ROUNDS :], heard_m]
@@ -123,15 +122,15 @@ class SeenSpace:
             cones[:, CLEAR_TO] = np.minimum(np.minimum(*self._rounds[:2]), heard_m)
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
         half_cone_rad = math.radians(sonar.cone_deg) / 2.0
-        came = np.zeros(len(cones), dtype=np.bool_)
-        self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s, came)
+        news = np.zeros(len(cones), dtype=np.intp)
+        self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s, news)
         touching = cones[:, ECHO] == TOUCHING_M
         if touching.any():
             x, y, theta = axes[touching].T
             self._touching = np.column_stack((x + leaves_m[touching] * np.cos(theta), y + leaves_m[touching] * np.sin(theta)))
         else:
             self._touching = NOWHERE
-        return came
+        return news
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""

@@ -36,6 +36,7 @@ class WalkerWatch:
         self._movers = Movers()
         self._scans: list[tuple[LaserScan, Planar]] = []
         self._walkers: list[Walker] = []
+        self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
         """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
@@ -58,15 +59,19 @@ class WalkerWatch:
         seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
+    def doubt(self, stamp_s: float) -> None:
+        """Something is heard near where nothing was known: until it proves to stand it may be somebody."""
+        self._doubted_s = stamp_s
+
     def rows(self, now_s: float) -> Array:
         """(n, COLUMNS) of all who are in view; see `Walker.row`."""
         seen = [one.row(now_s) for one in self._walkers if one.times >= SURE and one.is_in_view(now_s)]
         return np.array(seen) if seen else NOBODY
 
     def is_anybody_about(self, now_s: float) -> bool:
-        """Whether somebody was seen or heard walking lately."""
+        """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
-        return any(one.times >= SURE for one in self._walkers)
+        return now_s - self._doubted_s < IN_VIEW_S or len(self._walkers) > 0
 
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
