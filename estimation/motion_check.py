@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from estimation.home_scan import Home, KeyScan, difference
 from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep, match_scans
@@ -29,7 +30,6 @@ GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the ma
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
 MOST_PAN_RAD = 0.3  # a laser that was panned farther sees too little of the same
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
-HOME_M, HOME_RAD, HOME_SCANS = 0.1, 0.05, 3  # so near to where it must be the place before is seen, so often, by a robot that is not lost
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
@@ -44,14 +44,6 @@ class Limits(NamedTuple):
     speed_mps: float
     turn_radps: float
     max_range_m: float
-
-
-class KeyScan(NamedTuple):
-    """The scan that others are compared with; `arm`: the laser seen from the robot."""
-
-    at: Sums
-    ranges_m: Array
-    arm: Pose2
 
 
 class MotionCheck:
@@ -72,8 +64,7 @@ class MotionCheck:
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
         self._is_elsewhere = False
-        self._home: KeyScan | None = None  # the place before the robot seemed elsewhere
-        self._at_home = 0  # scans in a row that showed it again
+        self._home = Home()
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._since_s = -math.inf
@@ -132,7 +123,7 @@ class MotionCheck:
         if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
             self._renew(scan)
             return
-        if self._is_carried_off and self._is_back_home(scan, first_rad, step_rad):
+        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
             self.found()
             self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
         match = self._best_match(key, scan, motion, first_rad, step_rad)
@@ -145,7 +136,7 @@ class MotionCheck:
             return
         self._is_elsewhere = not self._is_elsewhere and _is_odd(match) and not (_is_crowded(key) or _is_crowded(scan))
         if self._is_elsewhere and not self._is_carried_off:
-            self._home = key
+            self._home = Home(key)
         self._renew(scan)
 
     def blind(self) -> None:
@@ -154,20 +145,10 @@ class MotionCheck:
 
     def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
         """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
-        home = self._home
+        home = self._home.key
         if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
             return None
         return self._best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad)
-
-    def _is_back_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> bool:
-        """True if one scan after the other shows the place before just where it must be: then nobody has carried the robot."""
-        match, is_home = self._seen_from_home(scan, first_rad, step_rad), False
-        if match is not None and self._home is not None and match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
-            seen = compose(compose(self._home.arm, match.step), inverse(scan.arm))
-            off_m, aside_m, off_rad = _difference(motion_between(self._home.at, scan.at).pose, seen)
-            is_home = math.hypot(off_m, aside_m) < HOME_M and abs(off_rad) < HOME_RAD
-        self._at_home = self._at_home + 1 if is_home else 0
-        return self._at_home >= HOME_SCANS
 
     def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
         """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
@@ -193,12 +174,12 @@ class MotionCheck:
             self._renew(scan)
             return
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
-        off_m, aside_m, off_rad = _difference(motion.pose, seen)
+        off_m, aside_m, off_rad = difference(motion.pose, seen)
         off_rad -= self._counted_rad
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(stamp_s):
-                self._home = key
+                self._home = Home(key)
                 self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
                 self._renew(scan)
             return
@@ -238,7 +219,7 @@ class MotionCheck:
     def _lose(self, text: str) -> None:
         self._is_elsewhere = False
         if not self._is_carried_off:
-            self._is_carried_off, self._at_home = True, 0
+            self._is_carried_off = True
             self.news.append(News(LOST, text))
 
     def _renew(self, scan: KeyScan) -> None:
@@ -259,11 +240,3 @@ def _is_crowded(scan: KeyScan) -> bool:
 def _is_far(pose: Pose2, times: float) -> bool:
     """True if so many times the way or turn lies between two scans after which another key scan is taken."""
     return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD
-
-
-def _difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:
-    """What the laser saw more than was reckoned: m along the way, m to the left of it, rad."""
-    heading_rad = 0.5 * reckoned[2]
-    c, s = math.cos(heading_rad), math.sin(heading_rad)
-    x, y = seen[0] - reckoned[0], seen[1] - reckoned[1]
-    return c * x + s * y, c * y - s * x, math.remainder(seen[2] - reckoned[2], math.tau)

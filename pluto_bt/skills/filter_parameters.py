@@ -21,7 +21,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     free_memory_s: Annotated[Positive, Meta(description="how long what was seen to be free counts as known")] = 60.0
     obstacle_memory_s: Annotated[Positive, Meta(description="how long an obstacle is remembered that is not looked at any more")] = 30.0
     fleeting_memory_s: Annotated[Positive, Meta(description="the same for an echo where the sonar had just heard nothing")] = 3.0
-    walker_memory_s: Annotated[NotNegative, Meta(description="so long after somebody was seen or heard walking, others may be where no sensor looks")] = 30.0
+    walker_memory_s: Annotated[NotNegative, Meta(description="so long after one walked somebody may be where no sensor looks")] = 30.0
     starter_s: Annotated[NotNegative, Meta(description="so long after its start somebody is about: who started it")] = 0.0
     walker_gap_s: Annotated[Positive, Meta(description="but not where it was seen to be free so short a time ago")] = 0.6
     hear_m: Annotated[Positive, Meta(description="echoes farther than this are not used")] = 2.5
