@@ -23,7 +23,7 @@ from pluto_bt.skills.verdict import Verdict
 from pluto_bt.skills.wall_parameters import WallParameters
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
-AWAITS_S = 5.0  # so long after the stop filter held for a walker his fellows, and the echoes that he left behind, are still awaited
+AWAITS_S = 10.0  # so long after the stop filter held for a walker his fellows, and the echoes that he left behind (8 s), are still awaited
 BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
 
 
