@@ -21,9 +21,9 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     free_memory_s: Annotated[Positive, Meta(description="how long what was seen to be free counts as known")] = 60.0
     obstacle_memory_s: Annotated[Positive, Meta(description="how long an obstacle is remembered that is not looked at any more")] = 30.0
     fleeting_memory_s: Annotated[Positive, Meta(description="the same for an echo where the sonar had just heard nothing")] = 3.0
-    walker_memory_s: Annotated[NotNegative, Meta(description="so long after one walked somebody may be where no sensor looks")] = 30.0
+    walker_memory_s: Annotated[NotNegative, Meta(description="how long who walked out of view is reckoned with")] = 30.0
     starter_s: Annotated[NotNegative, Meta(description="so long after its start somebody is about: who started it")] = 0.0
-    walker_gap_s: Annotated[Positive, Meta(description="but not where it was seen to be free so short a time ago")] = 0.6
+    walker_gap_s: Annotated[Positive, Meta(description="nobody walked in where it was seen to be free so short a time ago")] = 0.6
     hear_m: Annotated[Positive, Meta(description="echoes farther than this are not used")] = 2.5
     laser_stale_s: Annotated[NotNegative, Meta(description="older scans mean zero velocity; 0 = the laser's delay and 1.25 periods")] = 0.0
     laser_holes: Annotated[float, Meta(ge=0, le=1, description="share of beams without a usable number above which a scan is not trusted")] = 0.25

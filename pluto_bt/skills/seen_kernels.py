@@ -1,6 +1,6 @@
 """The hot loops of `SeenSpace`. A space is four arrays over square cells, in the frame of dead reckoning:
 
-`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (n, n): the same by the sonar alone.
+`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (2, n, n): the same by the sonar alone, and well inside a cone.
 `stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2): where, x m, y m; for two heights: LEVEL, the plane of
 the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
 """
@@ -27,6 +27,7 @@ TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
 SUDDEN_M = 1.0  # who is heard so near where nothing was known may be on his way
 CAME, SUDDEN = 1, 2
+ANYHOW, INSIDE = 0, 1  # layers of `heard`
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
 
@@ -133,13 +134,13 @@ def hear_cones(
                     if clears == 1:
                         if away_m < clear_m:
                             clear_cell(seen, stamps, row, column, stamp_s)
+                            heard[ANYHOW, row, column] = stamp_s
                             if aside_m < ahead_m * opening - CELL_M:  # what stands on the edge is heard now and then
-                                heard[row, column] = stamp_s
+                                heard[INSIDE, row, column] = stamp_s
                     elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
-                        is_new = heard[row, column] > stamp_s - LATELY_S
-                        on_arc, was_free = on_arc + 1, was_free + is_new
-                        put_s = stamp_s - fleeting_s if is_new else stamp_s
+                        on_arc, was_free = on_arc + 1, was_free + (heard[INSIDE, row, column] > stamp_s - LATELY_S)
+                        put_s = stamp_s - fleeting_s if heard[ANYHOW, row, column] > stamp_s - LATELY_S else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
             if on_arc > 0 and was_free == on_arc:
                 news[k] = CAME

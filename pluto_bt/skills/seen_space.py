@@ -34,7 +34,7 @@ class SeenSpace:
         n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
         self._outline, self._hear_m, self._reach_m, self._fleeting_s = outline, hear_m, reach_m, fleeting_s
         self.seen: Array = np.full((n, n), NEVER)
-        self._heard: Array = np.full((n, n), NEVER)
+        self._heard: Array = np.full((2, n, n), NEVER)
         self.stamps: Array = np.full((2, n, n), NEVER)
         self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
@@ -156,7 +156,8 @@ class SeenSpace:
         corner = (at[0] - half, at[1] - half)
         moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
         self._corner, self._middle = corner, at
-        self.seen, self._heard = _shifted(self.seen, *moved), _shifted(self._heard, *moved)
+        self.seen = _shifted(self.seen, *moved)
+        self._heard = np.stack([_shifted(layer, *moved) for layer in self._heard])
         self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
         self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
 

@@ -20,7 +20,7 @@ from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
 from pluto_bt.skills.map_hold import held_by_area
 from pluto_bt.skills.outline import Array, Planar, outline_of
-from pluto_bt.skills.seen_kernels import CELL_M, LEVEL, NEVER
+from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
 from pluto_bt.skills.sonar import sonar_code, where_word
 from pluto_bt.skills.stop_path import first_trouble, rim_of
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
@@ -151,13 +151,12 @@ class StopFilter:
         self, eyes: FilterEyes, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict
     ) -> tuple[Twist, Verdict]:
         """The largest share of a twist whose stopping path is free."""
-        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.walkers.rows(now_s), self.parameters
-        fresh_since_s = now_s - p.walker_gap_s if eyes.is_anybody_about(now_s) else NEVER
+        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.people(now_s), self.parameters
 
         def trouble_at(share: float) -> tuple[int, int, float]:
             return self._first_trouble(
                 space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures,
-                twist[0] * share, twist[1] * share, now_s - p.free_memory_s, walkers, fresh_since_s,
+                twist[0] * share, twist[1] * share, now_s - p.free_memory_s, walkers, now_s - p.walker_gap_s,
             )  # fmt: skip
 
         trouble = trouble_at(1.0)

@@ -18,7 +18,7 @@ MOST_MARGIN_M = 0.1
 LONGEST_S = 8.0
 BODY_M, SLIM_M = 0.2, 0.1  # who touches the outline has his middle about so far outside of it, give or take the second
 FAN_RAD = math.radians(15.0)  # a corner may be touched from all directions between its two edges' normals: one is looked at in each so much
-WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS = range(6)  # columns of the walkers
+WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS, IN_VIEW = range(7)  # columns of the walkers
 SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, LEAST_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(11)
 
 
@@ -36,8 +36,8 @@ def first_trouble(
         figures: the robot's twist now, its limits, how long the command holds before the brakes bite, and so on (the constants above).
         speed_mps, turn_rate_radps: the command.
         known_since_s: cells seen before are not known any more.
-        walkers: (k, 6) the discs in which the middles of walkers in view are; see `Walker.row`.
-        fresh_since_s: somebody may be wherever it was not seen to be free since; NEVER if nobody is about.
+        walkers: (k, 7) the discs in which the middles of walkers are; see `Walker.row`.
+        fresh_since_s: nobody who is out of view is where it was seen to be free since.
     Returns: (CLEAR, -1, 0), (MEETS, point, s), (UNSEEN, rim point, s) or (WALKER, rim point, s): what comes first, and when.
     """
     v, w = figures[SPEED], figures[TURN_RATE]
@@ -116,24 +116,25 @@ def rim_in_danger(
         column, row = cell_of(at_x + c * px - s * py, corner_x_m), cell_of(at_y + s * px + c * py, corner_y_m)
         if not is_known(seen, stamps, row, column, known_since_s):
             return UNSEEN, i
-        if walkers.shape[0] > 0 or fresh_since_s > NEVER:
+        if walkers.shape[0] > 0:
             px, py = px + BODY_M * nx, py + BODY_M * ny
             px, py = at_x + c * px - s * py, at_y + s * px + c * py
             column, row = cell_of(px, corner_x_m), cell_of(py, corner_y_m)
             is_fresh = 0 <= row < seen.shape[0] and 0 <= column < seen.shape[1] and seen[row, column] >= fresh_since_s
-            if (fresh_since_s > NEVER and not is_fresh) or is_walked_to(walkers, px, py, t_s):
+            if is_walked_to(walkers, px, py, t_s, is_fresh):
                 return WALKER, i
     return CLEAR, -1
 
 
 @inline_kernel
-def is_walked_to(walkers: Array, px: float, py: float, t_s: float) -> bool:
-    """Whether the middle of a walker in view may be at a point after `t_s`."""
+def is_walked_to(walkers: Array, px: float, py: float, t_s: float, is_fresh: bool) -> bool:
+    """Whether the middle of a walker may be at a point after `t_s`; of those out of view none is where it `is_fresh`."""
     found = False
     for k in range(walkers.shape[0]):
         dx, dy = walkers[k, WALKER_X] + walkers[k, DRIFT_X] * t_s - px, walkers[k, WALKER_Y] + walkers[k, DRIFT_Y] * t_s - py
         near_m = walkers[k, SPREAD_M] + walkers[k, GROWTH_MPS] * t_s + SLIM_M
-        found = found or dx * dx + dy * dy < near_m * near_m
+        if dx * dx + dy * dy < near_m * near_m and (walkers[k, IN_VIEW] != 0.0 or not is_fresh):
+            found = True
     return found
 
 

@@ -1,7 +1,8 @@
 """Who walks about: the stop filter's own memory of people and other moving things, seen or gone out of sight. Frame: dead reckoning.
 
-Who is in view is thought to go on about as he does. Where one walks, others may: for `memory_s` after somebody was seen or heard walking,
-he or another may be wherever the sensors have not looked lately; `stop_path` asks. Where nobody walked, nobody is assumed.
+Who is in view is thought to go on about as he does. Who stops there is thought to stay. Who went out of view may be anywhere that his legs
+can have taken him to since, for `memory_s`; what the sensors have seen to be free lately is left out by `stop_path`, which asks. Nothing is
+assumed of people who were never seen to walk.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
 SURE = 2  # a single sighting may be a grazed edge
 MOST_WALKERS = 12
-SPREAD, COLUMNS = 4, 6  # of a row
+SPREAD, IN_VIEW, COLUMNS = 4, 6, 7  # of a row
 
 
 class WalkerWatch:
@@ -60,23 +61,24 @@ class WalkerWatch:
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
     def doubt(self, stamp_s: float) -> None:
-        """Something is heard near where nothing was known: until it proves to stand it may be somebody."""
+        """Something was heard that may be somebody, until it proves to stand."""
         self._doubted_s = stamp_s
 
     def rows(self, now_s: float) -> Array:
-        """(n, COLUMNS) of all who are in view; see `Walker.row`."""
-        seen = [one.row(now_s) for one in self._walkers if one.times >= SURE and one.is_in_view(now_s)]
-        return np.array(seen) if seen else NOBODY
+        """(n, COLUMNS) of all who are known about; see `Walker.row`."""
+        self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
+        sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
+        return np.array(sure) if sure else NOBODY
 
     def is_anybody_about(self, now_s: float) -> bool:
         """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
-        self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
-        return now_s - self._doubted_s < IN_VIEW_S or len(self._walkers) > 0
+        return now_s - self._doubted_s < IN_VIEW_S or len(self.rows(now_s)) > 0
 
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
         rows = self.rows(now_s)
-        return np.column_stack((rows[:, :2], rows[:, SPREAD] + 2.0 * BODY_M))
+        seen = rows[rows[:, IN_VIEW] == 1.0]
+        return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
 
     def _before(self, scan: LaserScan) -> tuple[LaserScan, Planar] | None:
         """The newest scan that is old enough to compare with, if it has the same beams."""
@@ -119,3 +121,4 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, COLUMNS))
+ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, 0.0]])  # somebody out of view, nobody knows where

@@ -55,7 +55,9 @@ def test_a_walker_is_found_with_his_place_and_pace(velocity: tuple[float, float]
 def test_where_one_left_the_view_somebody_may_be_anywhere_for_a_while() -> None:
     walk = [(1.2 - 0.2 * k, 1.5) for k in range(14)]
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 14)
-    assert len(watch.rows(now_s + 5.0)) == 0
+    near, far = watch.rows(now_s), watch.rows(now_s + 5.0)
+    assert near[0, 6] == far[0, 6] == 0.0
+    assert 4.0 < far[0, 4] - near[0, 4] < 9.0, "five seconds at about a metre a second"
     assert watch.is_anybody_about(now_s + 25.0)
     assert not watch.is_anybody_about(now_s + 31.0)
 
@@ -67,10 +69,11 @@ def test_where_nobody_walked_nobody_is_assumed() -> None:
     assert watch.is_anybody_about(now_s + 0.5) and not watch.is_anybody_about(now_s + 0.7), "what stands is known to after a moment"
 
 
-def test_who_stops_in_view_is_no_disc_any_more_but_may_walk_on() -> None:
+def test_who_stops_in_view_stays_there() -> None:
     walk = [(4.0 - 0.2 * k, 0.0) for k in range(7)] + [(2.8, 0.0)] * 15
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 22)
-    assert len(watch.rows(now_s)) == 0 and watch.is_anybody_about(now_s)
+    rows = watch.rows(now_s)
+    assert len(rows) == 1 and rows[0, 4] < 2.0, "three seconds later his disc has not grown"
 
 
 def test_a_laser_that_looks_down_for_a_moment_does_not_lose_him() -> None:
