@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -21,6 +22,9 @@ from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.verdict import Verdict
 from pluto_bt.skills.wall_parameters import WallParameters
+
+if TYPE_CHECKING:
+    from pluto_bt.modules.robot_file import RobotFile
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
 AWAITS_S = 10.0  # so long after the stop filter held for a walker his fellows, and the echoes that he left behind (8 s), are still awaited
@@ -52,6 +56,11 @@ class Avoid:
             self._skill.reset()
             self._view = self._sent = None
             self._link.start()
+
+    def tune(self, robot: RobotFile) -> None:
+        """Parameters have changed."""
+        self._parameters = robot.avoid
+        self._skill.tune(robot, robot.avoid, robot.drive, robot.wall)
 
     def step(self, now_s: float) -> None:
         """Take a command, look around, command drive, tell the status."""
