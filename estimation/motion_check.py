@@ -2,7 +2,8 @@
 
 The laser sees how the robot moved since a scan of a moment ago (`scan_match`), and that is compared with what localisation reckons with:
 the turn (`turn_trial`), the way (`way_trial`), and whether the scan fits at all. One that fits nowhere near, followed by one that fits to it,
-was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is.
+was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is. People who stand round it may hide
+so much that a scan looks like that too; so the place before is kept, and when it comes into view again, where it must be, nobody is lost.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimation.news import LOST, News
+from estimation.home_scan import Home, KeyScan, difference
+from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep, match_scans
 from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
@@ -44,14 +46,6 @@ class Limits(NamedTuple):
     max_range_m: float
 
 
-class KeyScan(NamedTuple):
-    """The scan that others are compared with; `arm`: the laser seen from the robot."""
-
-    at: Sums
-    ranges_m: Array
-    arm: Pose2
-
-
 class MotionCheck:
     """Corrects each step of dead reckoning by what the witnesses have found out.
 
@@ -70,6 +64,7 @@ class MotionCheck:
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
         self._is_elsewhere = False
+        self._home = Home()
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._since_s = -math.inf
@@ -128,20 +123,32 @@ class MotionCheck:
         if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
             self._renew(scan)
             return
+        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
+            self.found()
+            self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
         match = self._best_match(key, scan, motion, first_rad, step_rad)
         self.fits = match.fits
         if match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
+            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not _is_odd(home):
+                self._is_elsewhere = False
             self._weigh(scan, key, motion, match)
             self._looked_s = stamp_s
             return
-        both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
-        is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED) and not (_is_crowded(key) or _is_crowded(scan))
-        self._is_elsewhere = is_odd and not self._is_elsewhere
+        self._is_elsewhere = not self._is_elsewhere and _is_odd(match) and not (_is_crowded(key) or _is_crowded(scan))
+        if self._is_elsewhere and not self._is_carried_off:
+            self._home = Home(key)
         self._renew(scan)
 
     def blind(self) -> None:
         """A scan came that cannot be compared: the next one is compared with the one before."""
         self._is_elsewhere = False
+
+    def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
+        """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
+        home = self._home.key
+        if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
+            return None
+        return self._best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad)
 
     def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
         """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
@@ -167,11 +174,12 @@ class MotionCheck:
             self._renew(scan)
             return
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
-        off_m, aside_m, off_rad = _difference(motion.pose, seen)
+        off_m, aside_m, off_rad = difference(motion.pose, seen)
         off_rad -= self._counted_rad
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(stamp_s):
+                self._home = Home(key)
                 self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
                 self._renew(scan)
             return
@@ -218,6 +226,12 @@ class MotionCheck:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
 
 
+def _is_odd(match: ScanStep) -> bool:
+    """True if the scans are of two places: few points fit, and both sides differ, or hardly any fits at all."""
+    both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
+    return match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
+
+
 def _is_crowded(scan: KeyScan) -> bool:
     """True if something near fills much of the scan."""
     return bool(np.count_nonzero(scan.ranges_m < CROWD_M) > CROWDED * len(scan.ranges_m))
@@ -226,11 +240,3 @@ def _is_crowded(scan: KeyScan) -> bool:
 def _is_far(pose: Pose2, times: float) -> bool:
     """True if so many times the way or turn lies between two scans after which another key scan is taken."""
     return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD
-
-
-def _difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:
-    """What the laser saw more than was reckoned: m along the way, m to the left of it, rad."""
-    heading_rad = 0.5 * reckoned[2]
-    c, s = math.cos(heading_rad), math.sin(heading_rad)
-    x, y = seen[0] - reckoned[0], seen[1] - reckoned[1]
-    return c * x + s * y, c * y - s * x, math.remainder(seen[2] - reckoned[2], math.tau)

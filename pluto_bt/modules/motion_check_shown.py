@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from estimation.motion_check import MotionCheck
-from estimation.news import LOST, WHEELS_GRIP
+from estimation.news import FOUND, LOST, WHEELS_GRIP
 from estimation.track import Tilt
 from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
 from pluto_bt.modules.context import Context
@@ -58,7 +58,7 @@ class MotionCheckShown:
         """Findings to the events, the state to the topic."""
         check = self._check
         for word, text in check.news:
-            level = "error" if word == LOST else "info" if word == WHEELS_GRIP else "warning"
+            level = "error" if word == LOST else "info" if word in (WHEELS_GRIP, FOUND) else "warning"
             self._say(level, word, "local", text)
             self._word, self._text = word, text
             self._lost_text = text if word == LOST else self._lost_text

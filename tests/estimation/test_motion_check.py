@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from estimation.motion_check import Limits, MotionCheck
-from estimation.news import GYRO_DRIFT, GYRO_REFUSED, LOST, WHEEL_SLIP, WHEELS_GRIP
+from estimation.news import FOUND, GYRO_DRIFT, GYRO_REFUSED, LOST, WHEEL_SLIP, WHEELS_GRIP
 from estimation.se2 import Pose2, arc, compose
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
@@ -116,6 +116,19 @@ def test_a_robot_that_is_carried_is_lost_until_somebody_finds_it(to: Pose2) -> N
     drive.check.found()
     drive.believed = drive.true
     assert drive.run(3.0).words == [LOST] and not drive.check.lost and drive.error_m < 0.05
+
+
+@pytest.mark.parametrize(("hidden_s", "words"), [(0.2, []), (2.0, [LOST, FOUND])], ids=["for one scan", "for a while"])
+def test_a_robot_that_sees_the_place_before_again_is_not_lost(hidden_s: float, words: list[str]) -> None:
+    """As when people stand round it: the scan looks like another place, and then like the old one."""
+    drive = Drive().run(3.0)
+    here = drive.true
+    drive.true = (6.0, 4.0, 2.0)
+    drive.run(hidden_s, speed=0.0)
+    drive.true = here
+    drive.run(2.0, speed=0.0)
+    assert drive.words == words and not drive.check.lost
+    assert drive.run(4.0).words == words and drive.error_m < 0.1
 
 
 def test_without_a_laser_the_gyro_is_judged_by_wheels_that_run_straight() -> None:
