@@ -1,80 +1,89 @@
-"""What honest sensors are off by all the same: a gyro's bias that creeps, and the scale of the wheels; learned little by little from the laser.
+"""What honest sensors are off by all the same: a gyro's bias that creeps, the scale of the wheels; learned little by little from the laser.
 
 A gyro that creeps by 0.02 deg/s and wheels that count 1 % too much are found wrong by nobody, and put a robot 10 m off after 400 m of street.
-Every good comparison of two scans says a little about both. Two Kalman filters weigh it; what is too far off for them is left to the trials.
+Every good comparison of two scans says a little about both; a Kalman filter weighs it. What is too far off is left to the trials, and nothing is
+touched until it is proven: the sensors alone are best over a short way.
 """
 
 from __future__ import annotations
 
 import math
+from typing import Final, NamedTuple
 
-GATE = 4.0  # standard deviations: what is farther off is no creeping
-GYRO_VAR = math.radians(0.02) ** 2  # rad²/s: the turn, after one second; twice the DMU's white noise (atrv2.toml) at 50 readings a second, squared
-BIAS_RADPS = math.radians(0.02)  # how well the bias is known when it was just measured: 1000 samples, and the minutes since
-CREEP_VAR = math.radians(0.001) ** 2  # (rad/s)²/s: random walk of the bias, twice the DMU's
-TURN_NOISE_RAD = math.radians(0.02)  # of a comparison, whatever it says of itself: the wrist's angles
-SCALE, SCALE_VAR_PER_M = 0.02, 0.0005**2  # wheels: how well the way is calibrated, and how the ground changes
-WAY_NOISE_M, WAY_VAR_PER_M = 0.005, 0.005**2  # of a comparison; of the wheels' way after a metre
-SEES_ALONG_M, LEAST_WAY_M = 0.008, 0.3  # along a bare street a laser sees no way; of a shorter one nothing is learned
-MOST_SCALE = 0.05
+GATE = 4.0  # standard deviations: a comparison that is farther off than this tells of no creeping
+PROVEN = 3.0  # the same: the sum of all differences must be so far off what the comparisons alone can come to
 
 
-class TurnTrim:
-    """Attributes: `bias_radps`, by which the gyro turns more than the robot."""
+class Honesty(NamedTuple):
+    """How wrong a sensor may be that is not found wrong. Its error grows with an extent: seconds for a gyro, metres for wheels.
 
-    def __init__(self) -> None:
-        self.bias_radps = 0.0
-        self._bias_var = BIAS_RADPS**2
+    Attributes:
+        rate: standard deviation of the error per extent. creep_var: growth of its variance per extent.
+        noise_var: variance that an extent of one adds by chance. seen: noise of a comparison besides what it says of itself.
+    """
 
-    def take(self, off_rad: float, sigma_rad: float, time_s: float) -> float:
-        """Learn from one comparison; gives the part of it by which the heading should be put right at once.
-
-        Args:
-            off_rad: what the laser saw more than was reckoned, `sigma_rad` how sure that is, `time_s` over how long.
-
-        The heading was right where the comparison began, so with B the variance of the bias, g and q those of gyro noise and creeping, its
-        error e at the end has var(e) = B t² + g t + q t³/3, cov(e, bias) = B t + q t²/2.
-        """
-        bias_var = self._bias_var + CREEP_VAR * time_s
-        turn_var = self._bias_var * time_s**2 + GYRO_VAR * time_s + CREEP_VAR * time_s**3 / 3.0
-        cross = self._bias_var * time_s + 0.5 * CREEP_VAR * time_s**2
-        sum_var = turn_var + sigma_rad**2 + TURN_NOISE_RAD**2
-        self._bias_var = bias_var
-        if abs(off_rad) > GATE * math.sqrt(sum_var):
-            return 0.0
-        self.bias_radps -= cross / sum_var * off_rad
-        self._bias_var = bias_var - cross**2 / sum_var
-        return turn_var / sum_var * off_rad
-
-    def bias_moved(self, by_radps: float) -> None:
-        """The gyro's own bias was measured anew, higher by so much."""
-        self.bias_radps -= by_radps
-        if abs(by_radps) > BIAS_RADPS:
-            self.bias_radps, self._bias_var = 0.0, BIAS_RADPS**2
+    rate: float
+    creep_var: float
+    noise_var: float
+    seen: float
 
 
-class WayTrim:
-    """Attributes: `scale`, by which the wheels' way is multiplied."""
+# The DMU's figures in atrv2.toml: 0.1 deg/s of noise 50 times a second; creeping reckoned at twice its random walk; the bias as 1000 samples and
+# the minutes since leave it. `seen`: the wrist's angles.
+OF_GYRO: Final = Honesty(math.radians(0.02), math.radians(0.001) ** 2, math.radians(0.014) ** 2, math.radians(0.02))
+# Wheels calibrated by a wall (1 %) or badly (2 – 5 %), on ground that changes.
+OF_WHEELS: Final = Honesty(0.02, 0.0005**2, 0.004**2, 0.005)
 
-    def __init__(self) -> None:
-        self.scale = 1.0
-        self._var = SCALE**2
 
-    def take(self, off_m: float, sigma_m: float, way_m: float) -> float:
-        """Learn from one comparison; gives the part of it by which the position should be put right at once.
+class Trim:
+    """Attributes: `rate`: what has to be added to the sensor's figure per extent; 0 until that is proven."""
+
+    def __init__(self, honesty: Honesty) -> None:
+        self._honesty = honesty
+        self._begin()
+
+    def _begin(self) -> None:
+        self.rate = self._learned = 0.0
+        self._var = self._honesty.rate**2
+        self._held = self._held_var = 0.0  # the sum of what should have been put right, until it is proven, and how sure that is
+        self._is_proven = False
+
+    def take(self, off: float, sigma: float, extent: float) -> float:
+        """Learn from one comparison; gives by how much the sum of the past should be put right.
 
         Args:
-            off_m: what the laser saw more than the `way_m` that was reckoned with the present scale; `sigma_m`: how sure that is.
+            off: what the laser saw more than was reckoned, with `rate` in it, over `extent`; `sigma`: how sure that is.
+
+        Symbols: with R the variance of the rate, q of its creeping, g of the noise, the error e over the extent t has
+        var(e) = R t² + g t + q t³/3 and cov(e, rate) = R t + q t²/2.
         """
-        self._var = min(self._var + SCALE_VAR_PER_M * abs(way_m), SCALE**2)
-        if sigma_m > SEES_ALONG_M or abs(way_m) < LEAST_WAY_M:
+        h, size = self._honesty, abs(extent)
+        seen_var = sigma**2 + h.seen**2
+        error_var = self._var * extent**2 + h.noise_var * size + h.creep_var * size**3 / 3.0
+        shared = (self._var + 0.5 * h.creep_var * size) * extent
+        expected = (self._learned - self.rate) * extent
+        surprise, sum_var = off - expected, error_var + seen_var
+        self._var = min(self._var + h.creep_var * size, h.rate**2)
+        if abs(surprise) > GATE * math.sqrt(sum_var):
             return 0.0
-        noise_var = WAY_VAR_PER_M * abs(way_m)
-        way_var = self._var * way_m**2 + noise_var
-        sum_var = way_var + sigma_m**2 + WAY_NOISE_M**2
-        if abs(off_m) > GATE * math.sqrt(sum_var):
+        self._learned += shared / sum_var * surprise
+        self._var -= shared**2 / sum_var
+        self._held += expected + error_var / sum_var * surprise
+        self._held_var += seen_var
+        return self._due()
+
+    def _due(self) -> float:
+        """What is held back, once it is proven."""
+        self._is_proven = self._is_proven or abs(self._held) > PROVEN * math.sqrt(self._held_var)
+        if not self._is_proven:
             return 0.0
-        gain = self._var * way_m / sum_var
-        self.scale = min(max(self.scale * (1.0 + gain * off_m), 1.0 - MOST_SCALE), 1.0 + MOST_SCALE)
-        self._var -= gain * way_m * self._var
-        return way_var / sum_var * off_m
+        self.rate, due, self._held = self._learned, self._held, 0.0
+        return due
+
+    def moved(self, by: float) -> None:
+        """The sensor itself has been calibrated anew, and gives so much less per extent from now on."""
+        if abs(by) > self._honesty.rate:
+            self._begin()
+            return
+        self._learned += by
+        self.rate = self._learned if self._is_proven else 0.0
