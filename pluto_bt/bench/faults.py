@@ -93,6 +93,7 @@ def run(pairs: int = PAIRS) -> list[BenchRow]:
     rows = [BenchRow("pairs of faults without a complaint", 100.0 * (1.0 - len(bad) / pairs), "%", "100", f"{pairs} pairs: {', '.join(ends)}")]
     asked = [(pair, one) for pair in played for one in pair.asked]
     wrong = [f"{pair.text}, {one.text}" for pair, one in asked if not one.is_right]
-    rows.append(BenchRow("  first causes that why names rightly", 100.0 * (1.0 - len(wrong) / len(asked)), "%", ">= 95", "; ".join([f"{len(asked)} asked", *wrong])))
+    share = 100.0 * (1.0 - len(wrong) / len(asked)) if asked else 100.0
+    rows.append(BenchRow("  first causes that why names rightly", share, "%", ">= 95", "; ".join([f"{len(asked)} asked", *wrong])))
     rows.append(BenchRow("  collisions", sum(pair.play.result.collisions for pair in played), "", "0"))
     return rows + [BenchRow(f"  {pair.text}", len(pair.complaints), "", "0", "; ".join(pair.complaints)) for pair in bad]

@@ -19,7 +19,8 @@ FIRST_CAUSES: dict[str, frozenset[str]] = {  # name in CAUSES -> the codes that 
     "laser off": LASER_GONE, "laser frozen": LASER_GONE, "laser stuck": LASER_GONE, "laser NaN": LASER_GONE, "half the beams": LASER_GONE,
     "laser 2 Hz": LASER_GONE, "laser 400 ms late": LASER_GONE, "laser fatal": frozenset({"laser-fatal"}),
     "sonar stuck at 8 m": NOTHING, "sonar stuck at 0": frozenset({"sonar"}), "bumper stuck": frozenset({"bumper"}),
-    "odometry frozen": frozenset({"odometry-stale"}), "odometry stuck": frozenset({"odometry-frozen"}), "base blocked": frozenset({"odometry-frozen"}),
+    "odometry frozen": frozenset({"odometry-stale"}),
+    "odometry stuck": frozenset({"odometry-frozen"}), "base blocked": frozenset({"odometry-frozen"}),
     "wheel slip": frozenset({"wheel-slip"}), "a little slip": NOTHING,
     "gyro jump": frozenset({"no-pose"}), "small gyro jump": NOTHING, "odometry jump": NOTHING,
     "kidnapped": frozenset({"lost"}), "wrist off by 17 deg": frozenset({"lost"}), "a crate in the way": frozenset({"laser", "sonar"}),
@@ -63,7 +64,7 @@ def questions(path: Path, broken: Iterable[Broken], has_failed: bool) -> list[As
     faults = Faults()
     box = open_box(path, path.name, faults)
     if box is None:
-        raise ValueError(f"{path} is no black box: {[fault.message for fault in faults]}")
+        raise ValueError(f"{path} is no black box")
     return list(_questions(box, tuple(broken), has_failed))
 
 

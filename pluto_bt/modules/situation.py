@@ -8,7 +8,8 @@ from pluto_bt.modules.link import newest
 from pluto_bt.record.entries import Link, Situation
 
 LINKS = {
-    "motion": "motion/status", "avoidance": "avoidance/status", "drive": "drive/status", "filter": "filter/status", "localisation": "Localization/Check",
+    "motion": "motion/status", "avoidance": "avoidance/status", "drive": "drive/status", "filter": "filter/status",
+    "localisation": "Localization/Check",
 }  # fmt: skip
 RAW = "ATRV2/Drive/Raw"
 STILL_MPS, STILL_RADPS = 0.005, 0.005
