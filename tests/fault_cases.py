@@ -41,6 +41,11 @@ class FaultCase:
     platform: str = "atrv2"
     first: str = ""
 
+    @property
+    def asked(self) -> str:
+        """The first cause that `why` must name; "" where nothing stops the robot."""
+        return "" if self.outcome == "SUCCESS" and self.zero_within_s == GOES_ON else self.first or self.said
+
 
 def fault(device: str, kind: str, more: str = "") -> str:
     """A `<fault>` element."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pluto_bt.record.entries import Link, Situation
 
 NO_TROUBLE = ("stopped", "stuck")
+AGAIN_NS = 3_000_000_000  # the same complaint so soon again is the same trouble: what tries again every second goes quiet meanwhile
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,8 @@ class Trail:
         if last is not None and last.until_ns is None and not (is_trouble and link.reason == last.link.reason):
             self.troubles[name] = last = Trouble(last.link, last.since_ns, t_ns)
         if is_trouble and (last is None or last.until_ns is not None):
-            self.troubles[name] = Trouble(link, t_ns)
+            is_again = last is not None and last.link.reason == link.reason and t_ns - (last.until_ns or 0) <= AGAIN_NS
+            self.troubles[name] = Trouble(link, last.since_ns if last is not None and is_again else t_ns)
 
 
 def _said(value: object) -> object:
