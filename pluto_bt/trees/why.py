@@ -19,7 +19,6 @@ from pluto_bt.skills.reasons import CHAIN_REASONS
 
 LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
 LOCALISATION: Final = "localisation"
-LINK_OF_MODULE: Final = {"motion": "motion", "avoid": "avoidance", "drive": "drive", "filter": "filter"}
 CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
 STUCK_S: Final = 25.0  # the same for who is stuck: goto tries for 20 s to come nearer, and is held back only now and then
