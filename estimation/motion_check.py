@@ -19,6 +19,7 @@ from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep, match_scans
 from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
+from estimation.trim import OF_GYRO, OF_WHEELS, Trim
 from estimation.turn_trial import TurnTrial
 from estimation.way_trial import WayTrial
 
@@ -28,11 +29,12 @@ LEAST_BEAMS = 0.75  # of a scan must be numbers
 FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
 GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
-MOST_PAN_RAD = 0.3  # a laser that was panned farther sees too little of the same
+MOST_PAN_RAD = 1.6  # a laser that was panned farther sees too little of the same
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
+SEES_ALONG_M, LEAST_WAY_M = 0.008, 0.3  # along a bare street a laser sees no way; nothing is learned there, nor from less of a way
 KEY_WAY_M, KEY_TURN_RAD, KEY_S = 1.0, 0.5, 3.0  # a scan is compared with until the robot has moved on so far
 LONGEST_GAP_S = 60.0  # without usable scans: later the place may look different
 ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
@@ -59,6 +61,7 @@ class MotionCheck:
         self._limits, self._asks_wheels, self._has_gyro, self._judges_turns = limits, wheels_know_turns, has_gyro, judges_turns
         self.news: list[News] = []
         self.turn, self.way = TurnTrial(self.news, wheels_know_turns), WayTrial(self.news)
+        self._gyro_trim, self._wheel_trim = Trim(OF_GYRO), Trim(OF_WHEELS)
         self._is_carried_off = False
         self.fits = 1.0
         self._reckoning = Reckoning()
@@ -82,8 +85,11 @@ class MotionCheck:
         """(way m, turn rad) to reckon with. `turn_rad` is the heading source's, `is_measured` if that is a sensor."""
         if is_measured and self.turn.trusts_gyro and abs(turn_rad) > FASTER * self._limits.turn_radps * dt_s + JITTER_RAD:
             self._refuse_gyro(f"the gyro says {turn_rad / dt_s:.3g} rad/s, more than this robot can turn")
+        way_m += self._wheel_trim.rate * way_m
         reckoned_m = way_m * self.way.grip
         reckoned_rad, is_measured = self.turn.reckoned(dt_s, wheel_turn_rad, turn_rad, is_measured)
+        if is_measured:
+            reckoned_rad += self._gyro_trim.rate * dt_s
         self._reckoning.add(stamp_s, dt_s, reckoned_m, reckoned_rad, (way_m, wheel_turn_rad), is_measured)
         if self._has_gyro and self._asks_wheels and (self._alone is None or stamp_s - self._alone.stamp_s >= ALONE_S):
             self._judge_without_laser(stamp_s)
@@ -92,6 +98,11 @@ class MotionCheck:
     def found(self) -> None:
         """Somebody has said where the robot is."""
         self._is_carried_off = self._is_elsewhere = False
+
+    def bias_moved(self, by_radps: float) -> None:
+        """The gyro's own bias was measured anew, higher by so much."""
+        self.turn.bias_moved(by_radps)
+        self._gyro_trim.moved(by_radps)
 
     def _refuse_gyro(self, why: str) -> None:
         self.turn.refuse(why)
@@ -120,7 +131,7 @@ class MotionCheck:
             self._renew(scan)
             return
         motion = motion_between(key.at, at)
-        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
+        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 3.0):
             self._renew(scan)
             return
         if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
@@ -190,8 +201,18 @@ class MotionCheck:
         if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
             return
         if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
-            self.turn.keep(stamp_s, off_rad, motion)
+            self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
             self._renew(scan)
+
+    def _trim(self, off_m: float, sigma_m: float, off_rad: float, sigma_rad: float, motion: Motion) -> None:
+        """A comparison that is over, and found nothing wrong: learn from it what there is."""
+        if self._has_gyro and self.turn.trusts_gyro and motion.is_measured:
+            paid_rad = self._gyro_trim.take(off_rad, sigma_rad, motion.time_s)
+            self.turn.debt.owed += paid_rad
+            off_rad -= paid_rad
+        self.turn.keep(motion.until_s, off_rad, motion)
+        if self.way.grip == 1.0 and sigma_m < SEES_ALONG_M and abs(motion.wheels_m) > LEAST_WAY_M:
+            self.way.debt.owed += self._wheel_trim.take(off_m, sigma_m, motion.wheels_m)
 
     def _is_wrong_turn(self, scan: KeyScan, off_rad: float, noise_rad: float, motion: Motion) -> bool:
         """True if the turn is found wrong, or is suspected and the next scan has to confirm it."""

@@ -42,8 +42,7 @@ class MotionCheckShown:
             return  # a laser that repeats itself is no witness
         panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
         if max(abs(arm.tilt_rad), abs(tilt[0]), abs(tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
-            self._check.blind()
-            return
+            return  # and what the scan before it told still waits to be confirmed
         x, y = arm.pose_robot_laser[:2]
         self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))
 

@@ -48,12 +48,12 @@ def test_moveto_finds_its_way_through_a_town_it_has_never_seen(tell: Any, seed: 
 
 def test_moveto_goes_end_to_end_of_a_street_of_three_hundred_metres(scenario: Play, tmp_path: Path) -> None:
     text = shared_file("data", "worlds", "kth_yard.xml").read_text(encoding="utf-8")
-    robot = '<robot platform="atrv2" x="104" y="183" theta_deg="-90" ideal="true"/>'
+    robot = '<robot platform="atrv2" x="104" y="183" theta_deg="-90"/>'
     (tmp_path / "kth.xml").write_text(re.sub("<robot[^>]*/>", robot, text))
     (tmp_path / "mission.xml").write_text(MISSION.format(body='<MoveTo goal="5;36" max_speed_mps="0.9"/>'))
     run = scenario(str(tmp_path / "kth.xml"), mission=str(tmp_path / "mission.xml"), max_time_s=1200.0)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
-    assert math.dist(run.final_pose[:2], (5.0, 36.0)) < 0.5
+    assert math.dist(run.final_pose[:2], (5.0, 36.0)) < 0.3 + 0.01 * run.distance_m
     assert run.min_clearance_m > 0.8, "in the middle of the street"
 
 
