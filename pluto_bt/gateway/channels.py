@@ -14,6 +14,7 @@ from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.subscriptions import Flow
 
 GRACE_S = 0.05
+EARLY_S = 0.005  # a value that comes so little too early is taken: the next one might come a whole period too late
 LANE_S, MOST_LANES = 0.02, 16
 
 
@@ -83,7 +84,7 @@ class Channels:
         """A new value: serve the lanes that are due; yields the flows for whom it waits."""
         self._newest[newest.topic] = newest
         for lane in self._lanes[newest.topic].values():
-            if now_s >= lane.next_s:
+            if now_s >= lane.next_s - min(EARLY_S, 0.25 * lane.period_s):
                 yield from lane.serve(newest, now_s)
 
     def late(self, now_s: float) -> Iterator[Flow]:
