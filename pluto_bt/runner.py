@@ -22,6 +22,7 @@ from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.commands.option_values import groot_address
 from pluto_bt.gateway.listen import parse_address
+from pluto_bt.gateway.ssh_link import SshRequest
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.topic_globals import TopicGlobals
@@ -44,7 +45,7 @@ class Runner:
         self.mission = mission
         with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
         with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
-        quiet = replace(options, trace_path=None, has_gateway=False, groot=None, record=None, own_clock=None, on_event=lambda event: None)
+        quiet = replace(options, trace_path=None, has_gateway=False, groot=None, ssh=None, record=None, own_clock=None, on_event=lambda event: None)
         rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
@@ -144,6 +145,7 @@ def make_runner(
     resume: ResumeRequest | None = None,
     gateway: str | None = None,
     groot: str | None = None,
+    ssh: SshRequest | None = None,
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
@@ -166,11 +168,13 @@ def make_runner(
     resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
     if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
+    if ssh is not None and gateway is None and not realtime:
+        gateway = "127.0.0.1:0"  # who comes by ssh talks through the gateway
     options = Options(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
         trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
         gateway=parse_address(gateway) if gateway is not None else None,
-        groot=groot_address(groot) if groot is not None else None, load=load, on_event=on_event, on_progress=on_progress,
+        groot=groot_address(groot) if groot is not None else None, ssh=ssh, load=load, on_event=on_event, on_progress=on_progress,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip
     runner = Runner(inputs, mission, clock, options)

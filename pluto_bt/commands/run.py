@@ -43,6 +43,8 @@ def _parser() -> Parser:
     parser.add_argument("--resume", choices=("hold", "ask", "resume"), help="keep a journal; after a crash stay still, ask, or go on where it was")
     parser.add_argument("--journal", metavar="FILE", help="with --resume: where the journal lies (default: one for each mission in the state folder)")
     parser.add_argument("--gateway", metavar="HOST:PORT", help="serve the TCP/XML gateway (default with --realtime: 127.0.0.1:7500)")
+    parser.add_argument("--ssh", metavar="HOST:PORT", help="serve the shell by ssh, for who has a key; such as 127.0.0.1:7522")
+    parser.add_argument("--ssh-keys", metavar="FILE", help="with --ssh: the public keys that may come in (default: ~/.ssh/authorized_keys)")
     parser.add_argument("--groot", metavar="[HOST:]PORT", help="serve Groot2's live monitor, read-only (Groot2's own port is 1667)")
     parser.add_argument("--json", action="store_true", help="end with one JSON object on the last line")
     return parser
@@ -67,7 +69,7 @@ def _resume(args: argparse.Namespace) -> ResumeRequest | None:
 def _run(args: argparse.Namespace) -> RunResult:
     from pluto_bt.commands.files import refuse_shadowed_packages
     from pluto_bt.commands.inputs import Request, read_inputs
-    from pluto_bt.commands.option_values import check_gateway, check_groot, read_positive
+    from pluto_bt.commands.option_values import check_gateway, check_groot, read_positive, read_ssh
     from pluto_bt.commands.outputs import check_outputs
 
     refuse_shadowed_packages()
@@ -75,6 +77,7 @@ def _run(args: argparse.Namespace) -> RunResult:
     check_outputs(args, faults)
     check_gateway(args.gateway, faults)
     check_groot(args.groot, faults)
+    ssh = read_ssh(args.ssh, args.ssh_keys, faults)
     speed, max_time_s = read_positive(args.speed, "--speed", faults), read_positive(args.max_time, "--max-time", faults)
     inputs = read_inputs(Request.of(args), faults=faults)
     for warning in inputs.warnings:
@@ -85,7 +88,7 @@ def _run(args: argparse.Namespace) -> RunResult:
     progress = make_progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
-        resume=_resume(args), gateway=args.gateway, groot=args.groot, on_event=progress.event, on_progress=progress.show,
+        resume=_resume(args), gateway=args.gateway, groot=args.groot, ssh=ssh, on_event=progress.event, on_progress=progress.show,
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

@@ -38,7 +38,7 @@ class Console:
         self._robot = robot
         self._has_signals = has_signals
         self._completer = TableCompleter()
-        self._live = Live(robot, self._event)
+        self._live = Live(robot.address, self._event)
         self._shell = ""
         self._busy = ""  # what the middle line shows while a command goes on
         self._shown: Callable[[], str] | None = None
@@ -79,7 +79,6 @@ class Console:
     # talking -----------------------------------------------------------------------------------------------------
     async def talk(self) -> int:
         """Until Ctrl-D or `quit`."""
-        keeping = asyncio.create_task(self._robot.keep())
         try:
             self.say(GREETING)
             while True:
@@ -94,8 +93,7 @@ class Console:
                 if not await self._line(line):
                     return DONE
         finally:
-            keeping.cancel()
-            await self._live.close()
+            self._live.close()
             self._robot.close()
 
     async def _line(self, line: str) -> bool:

@@ -9,6 +9,7 @@ from contextlib import suppress
 from typing import Any
 
 from pluto_bt.gateway.client import Element, GatewayError
+from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.shell.asking import event_line
 from pluto_bt.gateway.shell.link import Link, Robot
 from pluto_bt.gateway.subscriptions import ALIASES
@@ -16,14 +17,13 @@ from pluto_bt.gateway.subscriptions import ALIASES
 OLD_S = 1.0
 SHOWN_HZ = 4.0
 SHOWN = ("Localization/Pose", "drive/status", "mission")
-LISTS = {"topic": "describe", "module": "modules", "mission": "mission"}
 
 
 class Live:
-    """Listens to the robot as long as the shell is open, over every connection that there is."""
+    """Listens to the robot as long as the shell is open, over a connection of its own: what commands subscribe to is another matter."""
 
-    def __init__(self, robot: Robot, on_event: Callable[[str], None]) -> None:
-        self._robot = robot
+    def __init__(self, address: Address, on_event: Callable[[str], None]) -> None:
+        self._robot = Robot(address)
         self._on_event = on_event
         self._now_s = asyncio.get_running_loop().time
         self._values: dict[str, tuple[Element, float]] = {}  # topic → value, when it was true by our clock
@@ -31,7 +31,8 @@ class Live:
         self._lost_s = self._now_s()
         self._listening: set[asyncio.Task[None]] = set()
         self.names: dict[str, tuple[str, ...]] = {}  # what can be completed: topic, module, mission, param, node
-        robot.on_open = self._opened
+        self._robot.on_open = self._opened
+        self._keeping = asyncio.create_task(self._robot.keep())
 
     def line(self) -> str:
         """The bottom line."""
@@ -40,10 +41,11 @@ class Live:
             return f" NO LINK to {self._robot.address} for {now_s - self._lost_s:.0f} s: what the robot does is not known here"
         return " " + "  |  ".join((self._pose(now_s), self._speed(now_s), self._mission()))
 
-    async def close(self) -> None:
+    def close(self) -> None:
         """Listen no more."""
-        for task in self._listening:
+        for task in (self._keeping, *self._listening):
             task.cancel()
+        self._robot.close()
 
     def _pose(self, now_s: float) -> str:
         value, age = self._newest("Localization/Pose", now_s)
