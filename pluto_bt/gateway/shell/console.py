@@ -175,6 +175,7 @@ class Console:
             self._keys.put_nowait("q")
             if self._work is not None and self._shown is None:
                 self._work.cancel()
+                self.say("left: a mission goes on by itself, what this command drove is stopped")
 
         return bindings
 
