@@ -179,7 +179,7 @@ class Visit(asyncssh.SSHServerSession[str]):
             return Size(rows=height or ROWS, columns=width or COLUMNS)
 
         with create_pipe_input() as keys:
-            output = Vt100_Output(out, size, term=self._channel.get_terminal_type(), enable_cpr=False)
+            output = Vt100_Output(out, size, term=self._channel.get_terminal_type())
             with create_app_session(input=keys, output=output) as self._app_session:
                 console = Console(self._robot, history_of("ssh_history"), may_read_files=False, has_signals=False)
                 self._input = keys
