@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import secrets
 import signal
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -21,6 +22,8 @@ from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.commands.option_values import groot_address
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.audit import default_path
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.gateway.ssh_link import SshRequest
 from pluto_bt.loop import Loop, rehearse
@@ -144,6 +147,8 @@ def make_runner(
     record: str | Path | None = None,
     resume: ResumeRequest | None = None,
     gateway: str | None = None,
+    gateway_access: Access | None = None,
+    gateway_audit: str | Path | None = None,
     groot: str | None = None,
     ssh: SshRequest | None = None,
     nodes: Sequence[type] = (),
@@ -170,10 +175,15 @@ def make_runner(
         inputs = replace(inputs, start=resumption.start or inputs.start)
     if ssh is not None and gateway is None and not realtime:
         gateway = "127.0.0.1:0"  # who comes by ssh talks through the gateway
+    if ssh is not None and gateway_access is not None:
+        token = secrets.token_hex(16)
+        ssh = ssh._replace(token=token if gateway_access.keys else "", certificate=gateway_access.certificate)
+        gateway_access = gateway_access.with_token("ssh", token) if gateway_access.keys else gateway_access
     options = Options(
-        world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
-        trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
-        gateway=parse_address(gateway) if gateway is not None else None,
+        world=inputs.world, robot=inputs.robot, params_path=inputs.params, map=inputs.map, start=inputs.start, seed=inputs.seed,
+        max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
+        gateway=parse_address(gateway) if gateway is not None else None, gateway_access=gateway_access,
+        gateway_audit=Path(gateway_audit) if gateway_audit else default_path(),
         groot=groot_address(groot) if groot is not None else None, ssh=ssh, load=load, on_event=on_event, on_progress=on_progress,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip

@@ -13,6 +13,7 @@ from pluto_bt.source import Faults, InputError, Place
 from pluto_bt.source.faults import fail
 
 if TYPE_CHECKING:
+    from pluto_bt.gateway.access import Access
     from pluto_bt.gateway.listen import Address
     from pluto_bt.gateway.ssh_link import SshRequest
 
@@ -72,14 +73,14 @@ def read_ports(settings: Sequence[str], faults: Faults) -> dict[str, str]:
     return ports
 
 
-def check_gateway(address: str | None, faults: Faults) -> None:
+def check_gateway(address: str | None, access: Access, faults: Faults) -> None:
     """An asked address that does not exist, is in use or not the loopback is refused before anything is loaded."""
     if address is None:
         return
     from pluto_bt.gateway.listen import open_listener, parse_address
 
     try:
-        open_listener(parse_address(address)).close()
+        open_listener(parse_address(address), access).close()
     except InputError as error:
         faults.extend(error.faults)
 

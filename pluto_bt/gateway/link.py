@@ -7,6 +7,8 @@ import socket
 import subprocess
 import sys
 
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.courier import Courier
 from pluto_bt.gateway.exchange import Exchange
 from pluto_bt.gateway.limits import Limits
@@ -27,11 +29,13 @@ class GatewayLink:
     `listen` (or `start`) raises InputError if the address cannot be had. A gateway that dies is restarted by `step`, later each time it dies soon.
     """
 
-    def __init__(self, port: RobotPort, address: Address, token: str = "", limits: Limits | None = None) -> None:
+    def __init__(
+        self, port: RobotPort, address: Address, access: Access | None = None, limits: Limits | None = None, audit: Audit | None = None
+    ) -> None:
         self._address = address
-        self._token = token
+        self._access = access or Access()
         self._limits = limits or Limits()
-        self._exchange = Exchange(port, self._send)
+        self._exchange = Exchange(port, self._send, audit)
         self._listener: socket.socket | None = None
         self._courier: Courier | None = None
         self._process: subprocess.Popen[bytes] | None = None
@@ -46,6 +50,11 @@ class GatewayLink:
         return Address(*self._listener.getsockname()[:2]) if self._listener else None
 
     @property
+    def is_lost(self) -> bool:
+        """True while there is no process."""
+        return self._process is None
+
+    @property
     def pid(self) -> int | None:
         """The gateway process."""
         return self._process.pid if self._process else None
@@ -53,7 +62,7 @@ class GatewayLink:
     def listen(self) -> None:
         """Take the port; harmless if it is taken already. Raises: InputError (the caller decides: an asked port is exit 2, the default a warning)."""
         if self._listener is None:
-            self._listener = open_listener(self._address)
+            self._listener = open_listener(self._address, self._access)
 
     def start(self, now_s: float) -> None:
         """Listen and spawn the process. Raises: InputError if `listen` was not called before and the port cannot be had."""
@@ -101,7 +110,7 @@ class GatewayLink:
         theirs.close()
         self._begun_s = now_s
         self._died_s = None
-        welcome = self._exchange.welcome(self._token, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS)
+        welcome = self._exchange.welcome(self._access, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS)
         self._courier = Courier(ours, self._exchange.receive)
         self._courier.send(welcome)
 

@@ -20,10 +20,12 @@ _PROGRAM = "from pluto_bt.gateway.ssh import main; main()"
 
 
 class SshRequest(NamedTuple):
-    """`--ssh` and `--ssh-keys`."""
+    """`--ssh` and `--ssh-keys`, and what the gateway will ask of the process: a token and TLS, "" = neither."""
 
     address: Address
     keys: Path
+    token: str = ""
+    certificate: str = ""
 
 
 class SshLink:
@@ -32,6 +34,7 @@ class SshLink:
     def __init__(self, request: SshRequest, host_key: Path) -> None:
         """Raises: InputError if the address cannot be had."""
         self._keys = request.keys
+        self._ticket = {"PLUTO_TOKEN": request.token, "PLUTO_CERTIFICATE": request.certificate}
         self._host_key = host_key
         self._listener: socket.socket | None = open_ssh_listener(request.address)
         self.address = Address(*self._listener.getsockname()[:2])  # with port 0 asked for, the port that was free
@@ -55,8 +58,9 @@ class SshLink:
         words = [str(self._listener.fileno()), str(theirs.fileno()), str(gateway), str(self._keys), str(self._host_key)]
         fds = (self._listener.fileno(), theirs.fileno())
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", _PROGRAM, *words], pass_fds=fds, stdin=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": path}
-        )
+            [sys.executable, "-P", "-c", _PROGRAM, *words], pass_fds=fds, stdin=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": path, **self._ticket},
+        )  # fmt: skip
         theirs.close()
         self._begun_s, self._retry_s = now_s, None
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.modules.context import Context
@@ -14,18 +15,18 @@ class Gateway:
 
     def __init__(self, context: Context) -> None:
         """Raises: InputError if the address that was asked for cannot be had; the default one in use is only a warning."""
-        asked: Address | None = context.system.options.gateway
-        port = GatewayPort(context)
-        self._watch = port.why_watch
-        self._link: GatewayLink | None = GatewayLink(port, asked or Address())
-        self._trouble = ""
+        options = context.system.options
+        self._say = context.say
+        self._restarts, self._is_lost, self._trouble = 0, False, ""
+        audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
+        link = GatewayLink(GatewayPort(context), options.gateway or Address(), options.gateway_access, audit=audit)
+        self._link: GatewayLink | None = link
         try:
-            self._link.listen()
+            link.listen()
         except InputError as error:
-            if asked is not None:
+            if options.gateway is not None:
                 raise
             self._link, self._trouble = None, error.faults[0].message
-        self._say = context.say
 
     @property
     def address(self) -> Address | None:
@@ -43,10 +44,18 @@ class Gateway:
     def step(self, now_s: float) -> None:
         """Answer, publish, look after the process."""
         if self._link is not None:
-            self._watch.step(now_s)
             self._link.step(now_s)
+            self._tell(self._link)
 
     def stop(self) -> None:
         """Tell the clients, end the process, free the port."""
         if self._link is not None:
             self._link.stop()
+
+    def _tell(self, link: GatewayLink) -> None:
+        """What operators should know of the process."""
+        if link.restarts != self._restarts:
+            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
+        elif link.is_lost and not self._is_lost:
+            self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended; it is started again")
+        self._restarts, self._is_lost = link.restarts, link.is_lost

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import os
+import ssl
 from collections.abc import Callable
 from types import TracebackType
-from typing import Self
+from typing import NamedTuple, Self
 from xml.etree import ElementTree
 
 from pluto_bt.gateway.client import Element, GatewayError
@@ -18,6 +20,30 @@ ANSWER_S = 5.0
 STOP_S = 0.5
 PING_S = 20.0
 LINE_BYTES = 16 * 1024 * 1024
+
+
+class Ticket(NamedTuple):
+    """What a gateway beyond the loopback asks for: a token, and the certificate (PEM file) that it must show; "" = not asked for."""
+
+    token: str = ""
+    certificate: str = ""
+
+    @classmethod
+    def of_environment(cls) -> Ticket:
+        """From PLUTO_TOKEN and PLUTO_CERTIFICATE: what stands on a command line, everybody on the machine can read."""
+        return cls(os.environ.get("PLUTO_TOKEN", ""), os.environ.get("PLUTO_CERTIFICATE", ""))
+
+    def context(self) -> ssl.SSLContext | None:
+        """TLS that trusts this certificate alone, whatever the host is called. Raises: GatewayError."""
+        if not self.certificate:
+            return None
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.check_hostname = False
+        try:
+            context.load_verify_locations(self.certificate)
+        except OSError as error:
+            raise GatewayError("no-connection", f"PLUTO_CERTIFICATE={self.certificate} cannot be read: {error}") from None
+        return context
 
 
 class Talk:
@@ -61,17 +87,19 @@ class Link:
         self._reading = asyncio.create_task(self._read(reader))
 
     @classmethod
-    async def open(cls, address: Address, timeout_s: float = ANSWER_S) -> Link:
+    async def open(cls, address: Address, ticket: Ticket, timeout_s: float = ANSWER_S) -> Link:
         """Connect and say hello. Raises: GatewayError."""
+        context = ticket.context()
         try:
             async with asyncio.timeout(timeout_s):
-                reader, writer = await asyncio.open_connection(address.host, address.port, limit=LINE_BYTES)
+                reader, writer = await asyncio.open_connection(address.host, address.port, limit=LINE_BYTES, ssl=context)
         except (OSError, TimeoutError) as error:
             said = getattr(error, "strerror", None) or str(error) or f"no answer within {timeout_s:g} s"
             raise GatewayError("no-connection", f"no gateway at {address}: {said}; is a run with --gateway going on?") from None
         link = cls(reader, writer)
         try:
-            await link.request("hello", version="1.0", name=NAME)
+            token: dict[str, Attribute] = {"token": ticket.token} if ticket.token else {}
+            await link.request("hello", version="1.0", name=NAME, **token)  # type: ignore[arg-type]  # mypy takes them for the timeout
         except BaseException:
             link.close()
             raise
@@ -127,6 +155,7 @@ class Robot:
 
     def __init__(self, address: Address) -> None:
         self.address = address
+        self._ticket = Ticket.of_environment()
         self.on_open: Callable[[Link], None] = lambda link: None
         self._link: Link | None = None
         self._opening = asyncio.Lock()
@@ -135,7 +164,7 @@ class Robot:
         """The connection, opened if there is none. Raises: GatewayError."""
         async with self._opening:
             if self._link is None or self._link.lost.is_set():
-                self._link = await Link.open(self.address)
+                self._link = await Link.open(self.address, self._ticket)
                 self.on_open(self._link)
             return self._link
 
@@ -151,7 +180,7 @@ class Robot:
             with contextlib.suppress(GatewayError):
                 await link.request("stop", timeout_s=STOP_S)
                 return
-        fresh = await Link.open(self.address)
+        fresh = await Link.open(self.address, self._ticket)
         try:
             await fresh.request("stop")
         finally:
