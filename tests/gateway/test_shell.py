@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import itertools
 import json
 import shlex
 import signal
@@ -23,6 +24,7 @@ from pluto_bt.gateway.shell.table import ROWS, SUBSHELLS, help_text
 
 from .conftest import Running
 
+RUNS = itertools.count(1, 2)  # the gateway of all these tests has seen the missions of each
 PORTS = {leaf.__name__: set(leaf.INPUT_PORTS) for leaf in LEAVES}
 
 
@@ -37,9 +39,7 @@ def lasting() -> Iterator[Running]:
 
 @pytest.fixture
 def running(lasting: Running) -> Running:
-    lasting.on_step = lambda: None
-    lasting.robot.__dict__.clear()
-    lasting.robot.__init__()  # type: ignore[misc]
+    lasting.renew()
     return lasting
 
 
@@ -201,16 +201,18 @@ class Mission:
 
     def __init__(self, running: Running, end: str) -> None:
         self.orders: list[tuple[str, str, str]] = []
-        self._running, self._end = running, end
+        self._running, self._end, self._run = running, end, next(RUNS)
+        running.robot.mission_now = m.MissionState(0.0, "before", self._run, "succeeded")
         running.robot.mission = self.order  # type: ignore[method-assign]
 
     def order(self, op: str, name: str, text: str, source: str) -> None:
         self.orders.append((op, name, text))
         if op == "start":
             running = self._running
-            running.robot.mission_now = m.MissionState(running.robot.time_s, "m", 1, "running")
+            running.robot.mission_now = m.MissionState(running.robot.time_s, "m", self._run + 1, "running")
             running.robot.write("mission/state", running.robot.mission_now)
-            threading.Timer(0.2, lambda: running.robot.write("mission/state", m.MissionState(0.0, "m", 1, self._end, "why"))).start()
+            over = m.MissionState(0.0, "m", self._run + 1, self._end, "why")
+            threading.Timer(0.2, lambda: running.robot.write("mission/state", over)).start()
 
 
 @pytest.mark.parametrize(("end", "expected"), [("succeeded", (0, "succeeded: why\n")), ("failed", (1, "failed: why\n"))])

@@ -98,10 +98,7 @@ def lasting() -> Iterator[Running]:
 @pytest.fixture
 def running(lasting: Running) -> Running:
     """Its drive says every step what it does, as a real one."""
-    robot = lasting.robot
-    lasting.on_step = lambda: None
-    robot.__dict__.clear()
-    robot.__init__()  # type: ignore[misc]
+    robot = lasting.renew()
 
     def drive() -> None:
         velocity = next((did[3] for did in reversed(robot.did) if did[0] == "command"), (0.0, 0.0))

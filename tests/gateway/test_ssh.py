@@ -80,9 +80,7 @@ def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Door]:
 
 @pytest.fixture
 def door(lasting: Door) -> Door:
-    robot = lasting.running.robot
-    robot.__dict__.clear()
-    robot.__init__()  # type: ignore[misc]
+    lasting.running.renew()
     return lasting
 
 

@@ -60,7 +60,7 @@ async def run(robot: Robot, face: Face, name: str, settings: tuple[str, ...] = (
         await robot.request("mission", op="load", name=name if name.endswith(".xml") else f"{name}.xml")
     await robot.request("mission", op="start")
     if waits:
-        return await _watch(robot, face, before.get("run", "0"))
+        return await _watch(robot, face, int(before.get("run", "0")))
     face.say(f"{name} runs")
     return DONE
 
@@ -70,7 +70,7 @@ async def trip2(robot: Robot, face: Face) -> int:
     return await run(robot, face, "trip2.xml")
 
 
-async def _watch(robot: Robot, face: Face, before: str) -> int:
+async def _watch(robot: Robot, face: Face, before: int) -> int:
     """Show the mission that began after run number `before`, until it is over."""
     link = await robot.link()
     with link.ask("subscribe", topic="mission") as talk:
@@ -78,7 +78,7 @@ async def _watch(robot: Robot, face: Face, before: str) -> int:
             while True:
                 message = await talk.next(None)
                 state = {part.tag: part.text or "" for part in message}
-                if message.tag != "value" or state.get("run") == before:
+                if message.tag != "value" or int(state.get("run", "0")) <= before:
                     continue
                 if state.get("state") in OVER:
                     face.say(": ".join(filter(None, (state["state"], state.get("reason")))))
