@@ -123,8 +123,9 @@ class GatewayPort:
             return RunState("timeout", "timeout", "the deadline is over")
         if activity.state == ABORTED:
             return RunState(activity.reason if activity.reason in ENDS else "cancelled", activity.reason)
-        outputs = tuple(activity.mission.outputs().items()) if activity.is_over else ()
-        return RunState(RUNNING if activity.state == PAUSED else activity.state, activity.reason, activity.text, outputs)
+        if not activity.is_over:
+            return RunState(RUNNING, "", str(activity.mission.root.feedback_message))
+        return RunState(activity.state, activity.reason, activity.text, tuple(activity.mission.outputs().items()))
 
     def cancel(self, run: str, reason: str) -> None:
         """End an errand with zero velocity."""

@@ -14,7 +14,10 @@ from pluto_bt.gateway.shell.row import Row
 from pluto_bt.gateway.shell.table import SUBSHELLS, help_text, rows_in
 from pluto_bt.source import did_you_mean
 
-IN_WORDS = {'<mission op="pause"/>': "pause", '<mission op="abort"/>': "abort", '<release what="estop"/>': "release", "<describe/>": "topics", "<params/>": "params"}
+IN_WORDS = {
+    '<mission op="pause"/>': "pause", '<mission op="abort"/>': "abort", '<release what="estop"/>': "release", "<describe/>": "topics",
+    "<params/>": "params",
+}  # fmt: skip
 
 
 def split(line: str) -> list[str]:
