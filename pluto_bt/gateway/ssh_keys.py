@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pluto_bt.gateway.state_folder import state_folder
+from pluto_bt.runtime.state_folder import state_folder
 from pluto_bt.source import Faults, Place
 from pluto_bt.source.faults import fail
 

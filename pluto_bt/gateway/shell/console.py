@@ -23,7 +23,7 @@ from pluto_bt.gateway.shell.link import Robot
 from pluto_bt.gateway.shell.live import Live
 from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split, subshell
-from pluto_bt.gateway.state_folder import state_folder
+from pluto_bt.runtime.state_folder import state_folder
 
 REFRESH_S = 0.25
 NAMED_KEYS = ("up", "down", "left", "right", "space", "q", "escape", "s-up", "s-down")
