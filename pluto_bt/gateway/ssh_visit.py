@@ -12,9 +12,9 @@ import asyncssh
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.shell.codes import FAILED, USAGE, UsageError
 from pluto_bt.gateway.shell.face import PlainFace
-from pluto_bt.gateway.shell.link import Robot
 from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.script import play
 
 if TYPE_CHECKING:
@@ -105,6 +105,8 @@ class Visit(asyncssh.SSHServerSession[str]):
         elif self._has_terminal:
             if INTERRUPT in data:
                 self._interrupt()
+            elif END_OF_INPUT in data:
+                self._cancel()
         elif self._command is None:
             *lines, self._line = (self._line + data).split("\n")
             for line in lines:
@@ -196,6 +198,8 @@ class Visit(asyncssh.SSHServerSession[str]):
         except asyncio.CancelledError:
             if self._stopping is not None:
                 code = await self._stopping
+        except Exception as error:  # told to the one who asked, not to the terminal of the run
+            self._face.complain(f"internal: {type(error).__name__}: {error}")
         finally:
             self._robot.close()
             with suppress(OSError):

@@ -22,8 +22,8 @@ from prompt_toolkit.output.vt100 import Vt100_Output
 from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.port import RunState
 from pluto_bt.gateway.shell.console import Console
-from pluto_bt.gateway.shell.link import Robot
 from pluto_bt.gateway.shell.live import Live
+from pluto_bt.gateway.shell.robot import Robot
 
 from .conftest import Running
 
@@ -128,7 +128,7 @@ def test_the_bottom_line_is_honest(running: Running) -> None:
     events: list[str] = []
 
     async def watch() -> None:
-        live = Live(running.address, events.append)
+        live = Live(running.address, lambda line, level: events.append(line))
         assert "NO LINK" in live.line()
         await until(lambda: "m/s" in live.line(), live.line)
         assert "pose unknown" in live.line() and "no mission" in live.line()

@@ -92,13 +92,13 @@ def test_limits_and_release_hold_for_any_keys(hits: list[tuple[str, float, float
     ],
 )
 def test_tab_offers_what_fits(typed: str, offered: list[str]) -> None:
-    completer = TableCompleter()
-    completer.names = {"topic": ("Localization/Pose", "drive/status"), "module": ("sick", "wrist"), "mission": ("patrol.xml",)}
+    names = {"topic": ("Localization/Pose", "drive/status"), "module": ("sick", "wrist"), "mission": ("patrol.xml",)}
+    completer = TableCompleter(lambda: names)
     found = [completion.text for completion in completer.get_completions(Document(typed), CompleteEvent())]
     assert sorted(found) == sorted(offered)
 
 
 def test_tab_offers_the_rows_of_the_sub_shell_that_is_open() -> None:
-    completer = TableCompleter()
+    completer = TableCompleter(dict)
     completer.shell = "wrist"
     assert "point" in [completion.text for completion in completer.get_completions(Document(""), CompleteEvent())]

@@ -2,24 +2,18 @@
 
 from __future__ import annotations
 
-import asyncio
-import json
 import math
-from collections.abc import Callable
-from contextlib import suppress
-from pathlib import Path
-from typing import TextIO
 
-from pluto_bt.gateway.client import Element, GatewayError
+from pluto_bt.gateway.client import GatewayError
 from pluto_bt.gateway.shell.codes import DONE, FailedError
-from pluto_bt.gateway.shell.driving import Act, side_by_side
+from pluto_bt.gateway.shell.driving import Act
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Robot
+from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.shell.telling import event_line, shown
 from pluto_bt.gateway.why import causes_of, lines
 from pluto_bt.gateway.xml_text import Attribute
 
 EVENTS_SHOWN = 20
-LONG_LIST = 12  # numbers shown of a longer list
 POSES = ("Localization/Dead-Reckoning", "Localization/Laser_Dead-Reckoning", "Localization/Post_Pose", "Localization/Pose", "Localization/Laser_Pose")
 
 
@@ -102,64 +96,6 @@ def state_of(*topics: str) -> Act:
     return act
 
 
-async def watch(robot: Robot, face: Face, topic: str, rate_hz: float, for_s: float | None) -> int:
-    """Values of a topic as they come."""
-    await _listen(robot, (topic,), rate_hz, for_s, lambda value: face.say(shown(value)))
-    return DONE
-
-
-async def record(robot: Robot, face: Face, for_s: float, file: str, topics: tuple[str, ...]) -> int:
-    """What topics say, as JSON, a line a value."""
-    if file == "-":
-        await _listen(robot, topics or ("*",), 0.0, for_s, lambda value: face.say(as_json(value)))
-        return DONE
-    if not face.may_read_files:
-        mend = f"write - and redirect: ssh ROBOT record {for_s:g} - > FILE"
-        raise FailedError(f'cannot write "{file}": your files are out of reach over ssh; {mend}')
-    try:
-        with Path(file).open("x", encoding="utf-8") as out:
-            count = await _record(robot, topics, for_s, out)
-    except FileExistsError:
-        raise FailedError(f'"{file}" is there already; give another name') from None
-    except OSError as error:
-        raise FailedError(f'cannot write "{file}": {error.strerror or error}') from None
-    face.say(f"{count} values in {file}")
-    return DONE
-
-
-async def _record(robot: Robot, topics: tuple[str, ...], for_s: float, out: TextIO) -> int:
-    count = 0
-
-    def write(value: Element) -> None:
-        nonlocal count
-        count += 1
-        out.write(as_json(value) + "\n")
-
-    await _listen(robot, topics or ("*",), 0.0, for_s, write)
-    return count
-
-
-async def _listen(robot: Robot, topics: tuple[str, ...], rate_hz: float, for_s: float | None, hear: Callable[[Element], None]) -> None:
-    """Give each value of these topics to `hear`, for so long or until cancelled."""
-    link = await robot.link()
-
-    async def one(topic: str) -> None:
-        with link.ask("subscribe", topic=topic, max_rate_hz=rate_hz) as talk:
-            await talk.next()
-            while True:
-                hear(await talk.next(None))
-
-    try:
-        with suppress(TimeoutError):
-            async with asyncio.timeout(for_s), side_by_side() as group:
-                for topic in topics:
-                    group.create_task(one(topic))
-    finally:
-        if not link.lost.is_set():
-            for topic in topics:
-                link.forget(link.ask("unsubscribe", topic=topic).id)
-
-
 async def events(robot: Robot, face: Face, level: str) -> int:
     """The last events."""
     link = await robot.link()
@@ -171,45 +107,3 @@ async def events(robot: Robot, face: Face, level: str) -> int:
             found.append(event_line(await talk.next()))
     face.say("\n".join(found[-EVENTS_SHOWN:]) or "no events")
     return DONE
-
-
-def event_line(event: Element) -> str:
-    """An event for a person, from an `<event>` or a `<value>` of the topic."""
-    part = {child.tag: child.text or "" for child in event} if event.tag == "value" else {**event.attrib, "text": event.text or ""}
-    time = event.get("stamp") or event.get("time") or "0"
-    return f"{float(time):9.2f} s  {part.get('level', ''):<7} {part.get('source', '')}: {part.get('text', '')}"
-
-
-def shown(value: Element) -> str:
-    """A value for a person: a line a field, long lists cut; codes with their names."""
-    lines = [f"{value.get('topic')}  at {value.get('stamp')} s, age {value.get('age')} s"]
-    for part in value:
-        words = (part.text or "").split(" ")
-        text = part.text or " ".join(f"{key}={word}" for key, word in part.attrib.items())
-        cut = f"{' '.join(words[:LONG_LIST])} … ({len(words)} in all)" if len(words) > LONG_LIST and part.tag != "text" else text
-        lines.append(f"  {part.tag:<16} {cut}")
-    return "\n".join(lines)
-
-
-def as_json(value: Element) -> str:
-    """A value as one line of JSON: numbers as numbers, lists as lists, rows as objects."""
-    fields: dict[str, object] = {}
-    for part in value:
-        if part.attrib:
-            rows = fields.setdefault(part.tag, [])
-            assert isinstance(rows, list)
-            rows.append(dict(part.attrib))
-        else:
-            numbers = [_number(word) for word in (part.text or "").split()]
-            is_numeric = bool(numbers) and None not in numbers
-            fields[part.tag] = (numbers[0] if len(numbers) == 1 else numbers) if is_numeric else part.text or ""
-    head = {"topic": value.get("topic"), "seq": int(value.get("seq", "0")), "stamp_s": float(value.get("stamp", "0"))}
-    return json.dumps({**head, **fields}, ensure_ascii=False)
-
-
-def _number(word: str) -> float | None:
-    try:
-        number = float(word)
-    except ValueError:
-        return None
-    return number if math.isfinite(number) else None

@@ -9,7 +9,8 @@ from pluto_bt.gateway.client import Element
 from pluto_bt.gateway.shell.codes import DONE
 from pluto_bt.gateway.shell.driving import driving, side_by_side
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Link, Robot
+from pluto_bt.gateway.shell.link import Link
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.stick import Real, Stick
 from pluto_bt.gateway.xml_text import numbers
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from prompt_toolkit.completion import CompleteEvent, Completer, Completion
 from prompt_toolkit.document import Document
@@ -14,9 +14,9 @@ from pluto_bt.gateway.shell.table import SUBSHELLS, rows_in
 class TableCompleter(Completer):
     """Completes from the table, and from the names that the robot knows (by kind: topic, module, mission, param)."""
 
-    def __init__(self) -> None:
+    def __init__(self, names: Callable[[], Mapping[str, tuple[str, ...]]]) -> None:
         self.shell = ""
-        self.names: Mapping[str, tuple[str, ...]] = {}
+        self._names = names
 
     def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Completion]:
         """Every word that goes on with what was typed."""
@@ -44,4 +44,4 @@ class TableCompleter(Completer):
             at = min(at, len(arguments) - 1)
         if at < len(arguments):
             words = arguments[at].words
-            yield from ((word, arguments[at].expected) for word in (self.names.get(words, ()) if isinstance(words, str) else words))
+            yield from ((word, arguments[at].expected) for word in (self._names().get(words, ()) if isinstance(words, str) else words))

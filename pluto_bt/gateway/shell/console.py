@@ -11,6 +11,7 @@ from typing import Any
 from prompt_toolkit import PromptSession, print_formatted_text
 from prompt_toolkit.application import Application
 from prompt_toolkit.application.current import get_app
+from prompt_toolkit.formatted_text import FormattedText
 from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
 from prompt_toolkit.layout import HSplit, Layout, Window
@@ -19,14 +20,16 @@ from prompt_toolkit.layout.controls import FormattedTextControl
 from pluto_bt.gateway.shell.codes import DONE, UsageError
 from pluto_bt.gateway.shell.completer import TableCompleter
 from pluto_bt.gateway.shell.face import printable
-from pluto_bt.gateway.shell.link import Robot
 from pluto_bt.gateway.shell.live import Live
 from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split, subshell
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.runtime.state_folder import state_folder
 
 REFRESH_S = 0.25
 NAMED_KEYS = ("up", "down", "left", "right", "space", "q", "escape", "s-up", "s-down")
+STYLES = {"warning": "ansiyellow", "error": "ansired bold"}
+HINT = "Ctrl-C stops the robot, Ctrl-D leaves"
 GREETING = "Ctrl-C stops the robot, always. `help` lists the commands, Tab completes, Ctrl-D leaves."
 
 
@@ -37,8 +40,8 @@ class Console:
         self.may_read_files = may_read_files
         self._robot = robot
         self._has_signals = has_signals
-        self._completer = TableCompleter()
         self._live = Live(robot.address, self._event)
+        self._completer = TableCompleter(lambda: self._live.names)
         self._shell = ""
         self._busy = ""  # what the middle line shows while a command goes on
         self._shown: Callable[[], str] | None = None
@@ -82,7 +85,7 @@ class Console:
         try:
             self.say(GREETING)
             while True:
-                self._completer.shell, self._completer.names = self._shell, self._live.names
+                self._completer.shell = self._shell
                 try:
                     line = await self._prompt.prompt_async(f"{self._shell or 'pluto'}> ", handle_sigint=self._has_signals)
                 except EOFError:
@@ -117,7 +120,7 @@ class Console:
         """Do the work behind a screen of two lines that hears Ctrl-C (and what the work listens to)."""
         self._busy, self._shown = "", None
         layout = Layout(HSplit([
-            Window(FormattedTextControl(lambda: printable(self._shown() if self._shown else self._busy)), height=1),
+            Window(FormattedTextControl(lambda: self._shown() if self._shown else f"{self._busy}   ({HINT})".lstrip()), height=1),
             Window(FormattedTextControl(self._live.line), height=1, style="class:bottom-toolbar"),
         ]))  # fmt: skip
         app: Application[None] = Application(layout, key_bindings=self._busy_keys(), erase_when_done=True, refresh_interval=REFRESH_S)
@@ -133,8 +136,12 @@ class Console:
                 await app.run_async(handle_sigint=self._has_signals)
         finally:
             self._work.cancel()
-        with suppress(asyncio.CancelledError):
+        try:
             await self._work
+        except asyncio.CancelledError:
+            pass
+        except Exception as error:  # a fault of one command must not take the one away who can stop the robot
+            self.complain(f"internal: {type(error).__name__}: {error}")
         for stop in tuple(self._stops):
             await stop
 
@@ -179,9 +186,8 @@ class Console:
 
         return bindings
 
-    def _event(self, line: str) -> None:
-        self._completer.names = self._live.names
-        self.say(line)
+    def _event(self, line: str, level: str) -> None:
+        print_formatted_text(FormattedText([(STYLES.get(level, ""), printable(line))]))
 
 
 def history_of(name: str) -> History:

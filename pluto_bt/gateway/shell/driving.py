@@ -10,7 +10,8 @@ from typing import Any
 from pluto_bt.gateway.client import Element, GatewayError
 from pluto_bt.gateway.shell.codes import DONE, FAILED
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Link, Robot
+from pluto_bt.gateway.shell.link import Link
+from pluto_bt.gateway.shell.robot import Robot
 
 TTL_S = 3.0
 Act = Callable[..., Awaitable[int]]

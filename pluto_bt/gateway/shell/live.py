@@ -10,11 +10,13 @@ from typing import Any
 
 from pluto_bt.gateway.client import Element, GatewayError
 from pluto_bt.gateway.listen import Address
-from pluto_bt.gateway.shell.asking import event_line
-from pluto_bt.gateway.shell.link import Link, Robot
+from pluto_bt.gateway.shell.link import Link
+from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.shell.telling import event_line
 from pluto_bt.gateway.subscriptions import ALIASES
 
 OLD_S = 1.0
+HISTORY_S = 10.0
 SHOWN_HZ = 4.0
 SHOWN = ("Localization/Pose", "drive/status", "mission")
 
@@ -22,7 +24,8 @@ SHOWN = ("Localization/Pose", "drive/status", "mission")
 class Live:
     """Listens to the robot as long as the shell is open, over a connection of its own: what commands subscribe to is another matter."""
 
-    def __init__(self, address: Address, on_event: Callable[[str], None]) -> None:
+    def __init__(self, address: Address, on_event: Callable[[str, str], None]) -> None:
+        """`on_event` is given each event as a line, and its level."""
         self._robot = Robot(address)
         self._on_event = on_event
         self._now_s = asyncio.get_running_loop().time
@@ -103,8 +106,8 @@ class Live:
         with link.ask("subscribe", topic="events") as talk:
             while True:
                 message = await talk.next(None)
-                if message.tag == "value":
-                    self._on_event(event_line(message))
+                if message.tag == "value" and float(message.get("age", "0")) < HISTORY_S:  # `events` shows the older ones
+                    self._on_event(event_line(message), message.findtext("level") or "")
 
     async def _learn(self, link: Link) -> None:
         """What there is, for completion."""
@@ -120,7 +123,7 @@ class Live:
         """Notice the end of the connection."""
         await link.lost.wait()
         self._lost_s = self._now_s()
-        self._on_event(f"connection lost: {link.fault.code}: {link.fault.text}")
+        self._on_event(f"connection lost: {link.fault.code}: {link.fault.text}", "error")
 
 
 async def _until_lost(work: Coroutine[Any, Any, None]) -> None:

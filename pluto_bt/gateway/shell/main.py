@@ -15,8 +15,8 @@ from pluto_bt.gateway.client import GatewayError
 from pluto_bt.gateway.listen import Address, parse_address
 from pluto_bt.gateway.shell.codes import DONE, FAILED, INTERRUPTED
 from pluto_bt.gateway.shell.face import Face, PlainFace
-from pluto_bt.gateway.shell.link import Robot
 from pluto_bt.gateway.shell.obey import obey
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.script import play
 from pluto_bt.gateway.shell.table import help_text
 
@@ -35,7 +35,7 @@ def main(words: Sequence[str], out: TextIO | None = None, errors: TextIO | None 
     face = PlainFace(out, errors)
     if rest:
         return asyncio.run(_stoppable(robot, face, obey(robot, face, rest)))
-    if sys.stdin.isatty():
+    if sys.stdin.isatty() and out.isatty():
         return asyncio.run(_talk(robot))
     return asyncio.run(_stoppable(robot, face, play(robot, face, _typed(sys.stdin))))
 

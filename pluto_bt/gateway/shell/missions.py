@@ -11,7 +11,7 @@ from pluto_bt.gateway.client import Element
 from pluto_bt.gateway.shell.codes import DONE, FAILED, FailedError, UsageError
 from pluto_bt.gateway.shell.driving import Act
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Robot
+from pluto_bt.gateway.shell.robot import Robot
 
 OVER = ("succeeded", "failed", "aborted")
 WRAPPER = "said in the shell"

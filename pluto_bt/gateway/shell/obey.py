@@ -9,7 +9,7 @@ from pluto_bt.gateway.client import GatewayError
 from pluto_bt.gateway.shell.arguments import read_all
 from pluto_bt.gateway.shell.codes import DONE, FAILED, USAGE, FailedError, UsageError
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Robot
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.row import Row
 from pluto_bt.gateway.shell.table import SUBSHELLS, help_text, rows_in
 from pluto_bt.source import did_you_mean

@@ -13,7 +13,8 @@ from contextlib import suppress
 from pluto_bt.gateway.shell.codes import DONE, FAILED
 from pluto_bt.gateway.shell.driving import Act, driving
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Link, Robot
+from pluto_bt.gateway.shell.link import Link
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.xml_text import numbers
 
 REPEAT_S = 1.0  # the drive gives up four seconds after the last command

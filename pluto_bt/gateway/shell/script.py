@@ -6,8 +6,8 @@ from collections.abc import AsyncIterator
 
 from pluto_bt.gateway.shell.codes import DONE, USAGE, UsageError
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Robot
 from pluto_bt.gateway.shell.obey import obey, split, subshell
+from pluto_bt.gateway.shell.robot import Robot
 
 
 async def play(robot: Robot, face: Face, lines: AsyncIterator[str]) -> int:

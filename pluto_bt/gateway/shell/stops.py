@@ -6,7 +6,7 @@ from pluto_bt.gateway.shell import asking
 from pluto_bt.gateway.shell.codes import DONE
 from pluto_bt.gateway.shell.driving import driving
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Robot
+from pluto_bt.gateway.shell.robot import Robot
 
 
 async def stop(robot: Robot, face: Face, module: str | None) -> int:

@@ -5,7 +5,7 @@ A row belongs to every shell, or (`module_rows.py`) to the sub-shell of one modu
 
 from __future__ import annotations
 
-from pluto_bt.gateway.shell import asking, by_hand, missions, stops, tuning
+from pluto_bt.gateway.shell import asking, by_hand, listening, missions, stops, tuning
 from pluto_bt.gateway.shell.arguments import choice, number, rest, word
 from pluto_bt.gateway.shell.driving import node
 from pluto_bt.gateway.shell.module_rows import MODULE_ROWS
@@ -44,8 +44,8 @@ GENERAL: tuple[Row, ...] = (
     Row("why", (number("AT", "s of the run", None, 0.0, 1e9),), "why the robot is, or was, not moving", asking.why),
     Row("tree", (), "the tree now", asking.tree),
     Row("get", (TOPIC,), "the newest value of a topic", asking.get),
-    Row("watch", (TOPIC, HZ, FOR), "values as they come, at most so often (0 = each)", asking.watch),
-    Row("record", (SECONDS, FILE, TOPICS), "write what topics say as JSON, a line a value", asking.record),
+    Row("watch", (TOPIC, HZ, FOR), "values as they come, at most so often (0 = each)", listening.watch),
+    Row("record", (SECONDS, FILE, TOPICS), "write what topics say as JSON, a line a value", listening.record),
     Row("topics", (), "every topic and what it means", asking.topics),
     Row("events", (choice("LEVEL", ("info", "warning", "error"), "info"),), "the last events", asking.events),
     Row("params", (rest("NAME[=VALUE]", "a parameter, or its new value", "param"),), "show parameters, or set them, all or none; `params rollback`, `params save`",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pluto_bt.gateway.client import Element
 from pluto_bt.gateway.shell.codes import DONE, FailedError, UsageError
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Robot
+from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.xml_text import element, escape
 
 
