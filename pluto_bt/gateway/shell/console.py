@@ -10,10 +10,12 @@ from typing import Any
 
 from prompt_toolkit import PromptSession, print_formatted_text
 from prompt_toolkit.application import Application
-from prompt_toolkit.application.current import get_app
+from prompt_toolkit.application.current import get_app, get_app_session
 from prompt_toolkit.formatted_text import FormattedText
 from prompt_toolkit.history import FileHistory, History, InMemoryHistory
+from prompt_toolkit.input.typeahead import store_typeahead
 from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
+from prompt_toolkit.key_binding.key_processor import KeyPress
 from prompt_toolkit.layout import HSplit, Layout, Window
 from prompt_toolkit.layout.controls import FormattedTextControl
 
@@ -46,6 +48,7 @@ class Console:
         self._busy = ""  # what the middle line shows while a command goes on
         self._shown: Callable[[], str] | None = None
         self._keys: asyncio.Queue[str] = asyncio.Queue()
+        self._ahead: list[KeyPress] = []  # typed while a command went on: the next prompt takes it up
         self._work: asyncio.Task[int] | None = None
         self._stops: set[asyncio.Task[int]] = set()
         self._prompt: PromptSession[str] = PromptSession(
@@ -144,12 +147,15 @@ class Console:
             self.complain(f"internal: {type(error).__name__}: {error}")
         for stop in tuple(self._stops):
             await stop
+        store_typeahead(get_app_session().input, self._ahead)
+        self._ahead = []
 
     def stop_now(self) -> None:
         """Ctrl-C: the robot stops, then what goes on ends."""
         task = asyncio.create_task(stop_by_key(self._robot, self))
         self._stops.add(task)
         task.add_done_callback(self._stops.discard)
+        self._ahead = []
         if self._work is not None:
             self._work.cancel()
 
@@ -174,6 +180,8 @@ class Console:
 
         @bindings.add("<any>")
         def other(event: KeyPressEvent) -> None:
+            if self._shown is None:
+                self._ahead += event.key_sequence
             key = event.key_sequence[0].key
             self._keys.put_nowait({" ": "space"}.get(key, str(getattr(key, "value", key))))
 
