@@ -14,7 +14,7 @@ from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.stick import Real, Stick
 from pluto_bt.gateway.xml_text import numbers
 
-TTL_S = 1.0
+TTL_S = 2.0  # a shell that hangs while a key is held must not drive on
 PERIOD_S = 0.1
 STATUS_HZ = 20.0
 VELOCITY_ALL_SENSORS = 30  # cmdFlags = 10 * A + T: both sensors, velocity

@@ -13,7 +13,8 @@ from pluto_bt.gateway.shell.face import Face
 from pluto_bt.gateway.shell.link import Link
 from pluto_bt.gateway.shell.robot import Robot
 
-TTL_S = 3.0
+TTL_S = 20.0  # of the run, which may be a hundred times as fast as we; a shell that dies is noticed by its connection, not by this
+RENEW_S = 0.1
 Act = Callable[..., Awaitable[int]]
 
 
@@ -22,7 +23,7 @@ async def driving(robot: Robot, ttl_s: float = TTL_S) -> AsyncIterator[Link]:
     """Hold the lease inside. Who is cancelled there stops the robot, before anything else. Raises: GatewayError."""
     link = await robot.link()
     await link.request("lease", op="acquire", ttl_s=ttl_s, on_loss="stop")
-    renewing = asyncio.create_task(_renew(link, ttl_s / 3))
+    renewing = asyncio.create_task(_renew(link))
     try:
         yield link
     except asyncio.CancelledError:
@@ -39,10 +40,10 @@ def tell(link: Link, tag: str, /, **attributes: str) -> None:
         link.forget(link.ask(tag, **attributes).id)
 
 
-async def _renew(link: Link, period_s: float) -> None:
+async def _renew(link: Link) -> None:
     with suppress(GatewayError):  # taken away, or the connection is gone: what is driven ends by itself
         while True:
-            await asyncio.sleep(period_s)
+            await asyncio.sleep(RENEW_S)
             await link.request("lease", op="renew")
 
 
