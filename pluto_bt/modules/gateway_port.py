@@ -197,8 +197,8 @@ class GatewayPort:
         self._publishers[topic].put(value, self.now_s())
 
     def catalogue(self) -> Sequence[Item]:
-        """Nodes, parameters and modules."""
-        return catalogue(self._system.parts)
+        """Nodes, parameters, modules and goals."""
+        return catalogue(self._system.parts, self._system.context.map)
 
     def _tell_change(self, changed: Mapping[str, str], source: str) -> None:
         if changed:

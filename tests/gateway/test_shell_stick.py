@@ -87,12 +87,16 @@ def test_limits_and_release_hold_for_any_keys(hits: list[tuple[str, float, float
         ("record 1 - Loc", ["Localization/Pose"]),
         ("record 1 - x Loc", ["Localization/Pose"]),
         ("help wr", ["wrist"]),
+        ("navigate d", ["dock"]),
+        ("do G", ["GoTo"]),
+        ("do GoTo goal=1,2 t", ["tolerance_m="]),
         ("goto 3 ", []),
         ("pose ", []),
     ],
 )
 def test_tab_offers_what_fits(typed: str, offered: list[str]) -> None:
-    names = {"topic": ("Localization/Pose", "drive/status"), "module": ("sick", "wrist"), "mission": ("patrol.xml",)}
+    names = {"topic": ("Localization/Pose", "drive/status"), "module": ("sick", "wrist"), "mission": ("patrol.xml",),
+             "goal": ("dock", "home"), "node": ("GoTo",), "port GoTo": ("goal=", "tolerance_m=")}
     completer = TableCompleter(lambda: names)
     found = [completion.text for completion in completer.get_completions(Document(typed), CompleteEvent())]
     assert sorted(found) == sorted(offered)

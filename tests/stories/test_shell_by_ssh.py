@@ -100,6 +100,8 @@ def test_a_morning_round_by_ssh(robot: Robot) -> None:
     assert robot.by_ssh("stop").stdout == "stopped\n"
     assert "operator-stop" in robot.by_ssh("status").stdout
 
+    assert "unknown node" in robot.by_ssh("do", "GoTu", "goal=1,2").stderr
+
     stranger = robot.pluto("stop", PLUTO_CERTIFICATE=f"{robot.folder}/cert.pem")
     assert stranger.returncode == 1 and "unauthorised" in stranger.stderr
     anna = {"PLUTO_CERTIFICATE": f"{robot.folder}/cert.pem", "PLUTO_TOKEN": TOKEN}

@@ -37,11 +37,11 @@ class TableCompleter(Completer):
         elif before[0] == "help" and len(before) == 1:
             yield from ((name, "") for name in (*rows, *SUBSHELLS))
         elif before[0] in rows:
-            yield from self._words(rows[before[0]].arguments, len(before) - 1)
+            yield from self._words(rows[before[0]].arguments, before[1:])
 
-    def _words(self, arguments: tuple[Argument, ...], at: int) -> Iterator[tuple[str, str]]:
-        if arguments and arguments[-1].is_rest:
-            at = min(at, len(arguments) - 1)
+    def _words(self, arguments: tuple[Argument, ...], given: list[str]) -> Iterator[tuple[str, str]]:
+        at = min(len(given), len(arguments) - 1) if arguments and arguments[-1].is_rest else len(given)
         if at < len(arguments):
             words = arguments[at].words
-            yield from ((word, arguments[at].expected) for word in (self._names().get(words, ()) if isinstance(words, str) else words))
+            kind = f"port {given[0]}" if words == "port" else words
+            yield from ((word, arguments[at].expected) for word in (self._names().get(kind, ()) if isinstance(kind, str) else kind))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from typing import Any
 
 from pluto_bt.gateway.client import Element, GatewayError
-from pluto_bt.gateway.shell.codes import DONE, FAILED
+from pluto_bt.gateway.shell.codes import DONE, FAILED, UsageError
 from pluto_bt.gateway.shell.face import Face
 from pluto_bt.gateway.shell.link import Link
 from pluto_bt.gateway.shell.robot import Robot
@@ -66,6 +66,24 @@ async def run_node(robot: Robot, face: Face, node: str, **ports: str) -> int:
                 face.progress(": ".join(filter(None, (message.get("state") or "running", message.get("text")))))
                 message = await talk.next(None)
     return tell_result(face, message)
+
+
+async def navigate(robot: Robot, face: Face, goal: str) -> int:
+    """Plan the way to a place and drive it."""
+    return await run_node(robot, face, "NavigateTo", goal=goal.replace(",", ";"))
+
+
+async def do(robot: Robot, face: Face, name: str, settings: tuple[str, ...]) -> int:
+    """Any node of the library."""
+    return await run_node(robot, face, name, **inputs(settings))
+
+
+def inputs(settings: Sequence[str]) -> dict[str, str]:
+    """NAME=VALUE words as a table. Raises: UsageError."""
+    given = {name: value for name, equals, value in (setting.partition("=") for setting in settings) if equals and name.isidentifier()}
+    if len(given) != len(settings):
+        raise UsageError(f"expected inputs as NAME=VALUE, each once, found {' '.join(settings)}")
+    return given
 
 
 def tell_result(face: Face, result: Element) -> int:

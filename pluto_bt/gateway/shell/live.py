@@ -33,7 +33,7 @@ class Live:
         self._link: Link | None = None
         self._lost_s = self._now_s()
         self._listening: set[asyncio.Task[None]] = set()
-        self.names: dict[str, tuple[str, ...]] = {}  # what can be completed: topic, module, mission, param, node
+        self.names: dict[str, tuple[str, ...]] = {}  # what can be completed: topic, module, mission, param, node, goal, `port NODE`
         self._robot.on_open = self._opened
         self._keeping = asyncio.create_task(self._robot.keep())
 
@@ -114,6 +114,8 @@ class Live:
         kinds: dict[str, list[str]] = {}
         for item in await link.request("describe"):
             kinds.setdefault(item.get("kind", ""), []).append(item.get("name", ""))
+            if item.get("kind") == "node":
+                kinds[f"port {item.get('name')}"] = [f"{port.get('name')}=" for port in item.iter("field") if port.get("direction") != "out"]
         kinds["topic"] = [*kinds.get("topic", ()), *ALIASES]
         kinds["module"] = [module.get("name", "") for module in await link.request("modules")]
         kinds["mission"] = [mission.get("name", "") for mission in (await link.request("mission", op="list")).iter("mission")]

@@ -8,8 +8,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from pluto_bt.gateway.client import Element
-from pluto_bt.gateway.shell.codes import DONE, FAILED, FailedError, UsageError
-from pluto_bt.gateway.shell.driving import Act
+from pluto_bt.gateway.shell.codes import DONE, FAILED, FailedError
+from pluto_bt.gateway.shell.driving import Act, inputs
 from pluto_bt.gateway.shell.face import Face
 from pluto_bt.gateway.shell.robot import Robot
 
@@ -46,7 +46,7 @@ async def missions(robot: Robot, face: Face) -> int:
 async def run(robot: Robot, face: Face, name: str, settings: tuple[str, ...] = ()) -> int:
     """Load a mission, start it, and watch it to its end (not with a `&` at the end)."""
     waits = settings[-1:] != ("&",)
-    ports = _ports(settings if waits else settings[:-1])
+    ports = inputs(settings if waits else settings[:-1])
     before = await robot.request("mission", op="state")
     path = Path(name)
     if face.may_read_files and path.is_file():
@@ -91,13 +91,6 @@ async def _watch(robot: Robot, face: Face, before: int) -> int:
 def _told(mission: Element) -> str:
     reason, step = mission.get("reason"), mission.get("step")
     return f"{mission.get('state')}{f' ({reason})' if reason else ''}{f' at {step}' if step else ''}"
-
-
-def _ports(settings: tuple[str, ...]) -> dict[str, str]:
-    ports = {name: value for name, equals, value in (setting.partition("=") for setting in settings) if equals and name.isidentifier()}
-    if len(ports) != len(settings):
-        raise UsageError(f"expected inputs as NAME=VALUE, each once, found {' '.join(settings)}")
-    return ports
 
 
 def _document(text: str, ports: dict[str, str], name: str) -> str:

@@ -5,7 +5,7 @@ A row belongs to every shell, or (`module_rows.py`) to the sub-shell of one modu
 
 from __future__ import annotations
 
-from pluto_bt.gateway.shell import asking, by_hand, listening, missions, stops, tuning
+from pluto_bt.gateway.shell import asking, by_hand, driving, listening, missions, stops, tuning
 from pluto_bt.gateway.shell.arguments import choice, number, rest, word
 from pluto_bt.gateway.shell.driving import node
 from pluto_bt.gateway.shell.module_rows import MODULE_ROWS
@@ -15,6 +15,8 @@ X, Y, DEG = number("X", "m"), number("Y", "m"), number("DEG", "°")
 A_TOPIC = "the name of a topic, or its beginning and *"
 TOPIC, TOPICS = word("TOPIC", A_TOPIC, "topic"), rest("TOPIC", A_TOPIC, "topic")
 MODULE, MODULE_OR_NONE = word("MODULE", "the name of a module", "module"), word("MODULE", "the name of a module, or nothing", "module", None)
+GOAL = word("GOAL", "the name of a goal of the map, home, x,y or x,y,deg", "goal")
+NODE, PORTS = word("NODE", "the name of a node", "node"), rest("NAME=VALUE", "an input of the node", "port")
 B, H, RADIUS = number("B", "m", low=0.0), number("H", "m", low=0.0), number("RADIUS", "m", None, 0.1)
 SIDE, WALL = choice("SIDE", ("left", "right"), "left"), number("DISTANCE", "m", None, 0.0, 5.0)
 WHOM, BEHIND = choice("WHOM", ("person", "nearest"), "person"), number("DISTANCE", "m", None, 0.5, 8.0)
@@ -28,11 +30,13 @@ GENERAL: tuple[Row, ...] = (
     Row("goto", (X, Y), "drive straight to a place on the map, around what is in the way", node("GoTo", "goal=2"), drives=True),
     Row("maketurn", (number("DEG", "°", low=-3600.0, high=3600.0),), "turn by this angle, positive = clockwise", node("MakeTurn", "angle_deg"), drives=True),
     Row("moveto", (X, Y), "drive to a place along open paths, around buildings", node("MoveTo", "goal=2"), drives=True),
+    Row("navigate", (GOAL,), "plan the way on the map and drive it, to a goal of the map, home, x,y or x,y,deg", driving.navigate, drives=True),
     Row("explore", (B, H), "explore the rectangle ahead, B to either side, H deep; then come home", node("Explore", "rectangle=2"), drives=True),
     Row("investigate", (RADIUS,), "drive to the closest object and around it", node("Investigate", "radius_m"), drives=True),
     Row("wallfollow", (SIDE, WALL), "follow the wall on that side, the camera at that distance", node("WallFollow", "side", "distance_m"), drives=True),
     Row("follow", (WHOM, BEHIND), "follow who or what moves nearest", node("Follow", "target", "distance_m"), drives=True),
     Row("drive", (number("MPS", "m/s", 0.3, 0.01, 2.0),), "drive with the arrow keys, at most so fast; let go, and it stops", by_hand.drive, drives=True),
+    Row("do", (NODE, PORTS), "run one node of the library with these inputs", driving.do, drives=True),
     Row("run", (MISSION, INPUTS), "run a mission to its end", missions.run),
     Row("trip2", (), "run the car's scripted trip, trip2.xml", missions.trip2),
     Row("missions", (), "the missions that `run` knows by name", missions.missions),
