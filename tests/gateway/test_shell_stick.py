@@ -97,7 +97,7 @@ def test_limits_and_release_hold_for_any_keys(hits: list[tuple[str, float, float
 def test_tab_offers_what_fits(typed: str, offered: list[str]) -> None:
     names = {"topic": ("Localization/Pose", "drive/status"), "module": ("sick", "wrist"), "mission": ("patrol.xml",),
              "goal": ("dock", "home"), "node": ("GoTo",), "port GoTo": ("goal=", "tolerance_m=")}
-    completer = TableCompleter(lambda: names)
+    completer = TableCompleter(lambda: {kind: dict.fromkeys(of_kind, "") for kind, of_kind in names.items()})
     found = [completion.text for completion in completer.get_completions(Document(typed), CompleteEvent())]
     assert sorted(found) == sorted(offered)
 

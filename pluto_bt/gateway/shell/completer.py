@@ -12,9 +12,9 @@ from pluto_bt.gateway.shell.table import SUBSHELLS, rows_in
 
 
 class TableCompleter(Completer):
-    """Completes from the table, and from the names that the robot knows (by kind: topic, module, mission, param)."""
+    """Completes from the table, and from what the robot knows: by kind (topic, module, …) the names with their meanings."""
 
-    def __init__(self, names: Callable[[], Mapping[str, tuple[str, ...]]]) -> None:
+    def __init__(self, names: Callable[[], Mapping[str, Mapping[str, str]]]) -> None:
         self.shell = ""
         self._names = names
 
@@ -44,4 +44,5 @@ class TableCompleter(Completer):
         if at < len(arguments):
             words = arguments[at].words
             kind = f"port {given[0]}" if words == "port" else words
-            yield from ((word, arguments[at].expected) for word in (self._names().get(kind, ()) if isinstance(kind, str) else kind))
+            known = self._names().get(kind, {}) if isinstance(kind, str) else dict.fromkeys(kind, arguments[at].expected)
+            yield from known.items()

@@ -33,7 +33,7 @@ class Live:
         self._link: Link | None = None
         self._lost_s = self._now_s()
         self._listening: set[asyncio.Task[None]] = set()
-        self.names: dict[str, tuple[str, ...]] = {}  # what can be completed: topic, module, mission, param, node, goal, `port NODE`
+        self.names: dict[str, dict[str, str]] = {}  # by kind (topic, module, mission, param, node, goal, `port NODE`): names with their meanings
         self._robot.on_open = self._opened
         self._keeping = asyncio.create_task(self._robot.keep())
 
@@ -111,15 +111,16 @@ class Live:
 
     async def _learn(self, link: Link) -> None:
         """What there is, for completion."""
-        kinds: dict[str, list[str]] = {}
+        known: dict[str, dict[str, str]] = {"topic": dict.fromkeys(ALIASES, "")}
         for item in await link.request("describe"):
-            kinds.setdefault(item.get("kind", ""), []).append(item.get("name", ""))
-            if item.get("kind") == "node":
-                kinds[f"port {item.get('name')}"] = [f"{port.get('name')}=" for port in item.iter("field") if port.get("direction") != "out"]
-        kinds["topic"] = [*kinds.get("topic", ()), *ALIASES]
-        kinds["module"] = [module.get("name", "") for module in await link.request("modules")]
-        kinds["mission"] = [mission.get("name", "") for mission in (await link.request("mission", op="list")).iter("mission")]
-        self.names = {kind: tuple(names) for kind, names in kinds.items()}
+            kind, name = item.get("kind", ""), item.get("name", "")
+            known.setdefault(kind, {})[name] = item.findtext("doc") or ""
+            if kind == "node":
+                inputs = [port for port in item.iter("field") if port.get("direction") != "out"]
+                known[f"port {name}"] = {f"{port.get('name')}=": port.get("doc") or "" for port in inputs}
+        known["module"] = {module.get("name", ""): module.get("state", "") for module in await link.request("modules")}
+        known["mission"] = {mission.get("name", ""): "" for mission in (await link.request("mission", op="list")).iter("mission")}
+        self.names = known
 
     async def _mind(self, link: Link) -> None:
         """Notice the end of the connection."""
