@@ -24,7 +24,7 @@ from pluto_bt.commands.inputs import Inputs
 from pluto_bt.commands.option_values import groot_address
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.audit import default_path
-from pluto_bt.gateway.listen import parse_address
+from pluto_bt.gateway.listen import Address, is_free, parse_address
 from pluto_bt.gateway.ssh_link import SshRequest
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.journal_keeper import JournalKeeper
@@ -173,8 +173,8 @@ def make_runner(
     resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
     if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
-    if ssh is not None and gateway is None and not realtime:
-        gateway = "127.0.0.1:0"  # who comes by ssh talks through the gateway
+    if ssh is not None and gateway is None and not (realtime and is_free(Address())):
+        gateway = "127.0.0.1:0"  # who comes by ssh talks through the gateway, wherever it listens
     if ssh is not None and gateway_access is not None:
         token = secrets.token_hex(16)
         ssh = ssh._replace(token=token if gateway_access.keys else "", certificate=gateway_access.certificate)
