@@ -103,7 +103,7 @@ def search(
             cost[i * columns + j] = np.inf
     begin = start[0] * columns + start[1]
     cost[begin], came[begin] = 0.0, begin
-    settled = np.zeros(rows * columns, dtype=np.uint8)  # else a greedy search goes over the same ground again and again where no way leads to the goal
+    settled = np.zeros(rows * columns, dtype=np.uint8)  # else a greedy search goes over the same ground again and again where no way leads on
     count = push(keys, places, 0, 0.0, begin)
     while count > 0:
         count = pop(keys, places, count)
