@@ -92,6 +92,9 @@ class Robot(Protocol):
     def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
         """What a job of motion shows in `element[2..3]`; None = as it is."""
 
+    def post_pose(self, x_m: float, y_m: float, theta_rad: float) -> Pose | None:
+        """Tell localisation where the robot stands on the map; what was posted, None if another module keeps the pose."""
+
     def read_alarms(self) -> None:
         """Take back the alarms of `imu/alarms` that stay until they are read."""
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pluto_bt.source import Faults, InputError, Place
@@ -13,6 +15,7 @@ from pluto_bt.source.faults import fail
 if TYPE_CHECKING:
     from pluto_bt.gateway.access import Access
     from pluto_bt.gateway.listen import Address
+    from pluto_bt.gateway.ssh_link import SshRequest
 
 Pose = tuple[float, float, float]
 MAX_METRES = 1e6  # as in world files
@@ -111,6 +114,33 @@ def check_groot(text: str | None, faults: Faults) -> None:
         groot_address(text)
     except InputError as error:
         faults.extend(error.faults)
+
+
+def read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest | None:
+    """`--ssh HOST:PORT` with `--ssh-keys FILE`: the address, the library and the keys."""
+    if text is None:
+        if keys is not None:
+            faults.error(Place("--ssh-keys"), "bad-usage", "--ssh-keys is for --ssh", mend="add --ssh HOST:PORT")
+        return None
+    from pluto_bt.gateway.listen import parse_address
+    from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest, open_ssh_listener
+
+    missing = [name for name in ("asyncssh", "prompt_toolkit") if find_spec(name) is None]
+    if missing:
+        what, mend = f"{' and '.join(missing)} not installed", "pip install 'pluto_bt[shell]'"
+        faults.error(Place("--ssh"), "not-installed", what, expected=", ".join(missing), mend=mend)
+        return None
+    from pluto_bt.gateway.ssh_keys import check_keys, default_keys
+
+    path = default_keys() if keys is None else Path(keys).expanduser()
+    check_keys(path, faults)
+    try:
+        address = parse_address(text if ":" in text or text.isdigit() else f"{text}:{DEFAULT_PORT}")
+        open_ssh_listener(address).close()
+    except InputError as error:
+        faults.extend(replace(fault, file="--ssh") for fault in error.faults)
+        return None
+    return SshRequest(address, path.absolute())
 
 
 def _number(text: str) -> float | None:

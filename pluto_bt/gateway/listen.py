@@ -7,7 +7,7 @@ import socket
 from typing import NamedTuple
 
 from pluto_bt.gateway.access import Access
-from pluto_bt.source.faults import Place, fail
+from pluto_bt.source.faults import InputError, Place, fail
 
 DEFAULT_PORT = 7500
 BACKLOG = 1024
@@ -56,3 +56,12 @@ def open_listener(address: Address, access: Access | None = None) -> socket.sock
         mend = "stop the other program, or give another port: --gateway 127.0.0.1:0 takes any free one"
         fail(place, "address-in-use", f"cannot listen on {address}", found=error.strerror or str(error), mend=mend)
     return listener
+
+
+def is_free(address: Address) -> bool:
+    """True if somebody could listen there now."""
+    try:
+        open_listener(address).close()
+    except InputError:
+        return False
+    return True

@@ -49,6 +49,8 @@ class FakeRobot:
         self.accept = True
         self.refuse = ""
         self.alarms_read = 0
+        self.keeps_pose = False
+        self.posed: Pose | None = None
         self.resumes = 0
         self.views: list[ScanView] = []
         self._surroundings: Surroundings | None = None
@@ -98,6 +100,10 @@ class FakeRobot:
 
     def point_wrist(self, *target: float) -> None:
         self.pointed.append(target)
+
+    def post_pose(self, x_m: float, y_m: float, theta_rad: float) -> Pose | None:
+        self.posed = None if self.keeps_pose else Pose(1.0, (x_m, y_m, 0.0, theta_rad, 0.0, 0.0), setter=-1)
+        return self.posed
 
     def read_alarms(self) -> None:
         self.alarms_read += 1
