@@ -20,7 +20,7 @@ from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
-from pluto_bt.commands.option_values import groot_address
+from pluto_bt.commands.option_values import groot_address, web_address
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.journal_keeper import JournalKeeper
@@ -42,9 +42,9 @@ class Runner:
     def __init__(self, inputs: Inputs, mission: Mission, clock: VirtualClock | MonotonicClock, options: Options) -> None:
         self.inputs = inputs
         self.mission = mission
-        with_jobs = options.has_gateway or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
-        with_walls = options.has_gateway or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
-        quiet = replace(options, trace_path=None, has_gateway=False, groot=None, record=None, own_clock=None, on_event=lambda event: None)
+        with_jobs = options.takes_orders or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
+        with_walls = options.takes_orders or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
+        quiet = replace(options, trace_path=None, has_gateway=False, web=None, groot=None, record=None, own_clock=None, on_event=lambda event: None)
         rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
@@ -143,6 +143,7 @@ def make_runner(
     record: str | Path | None = None,
     resume: ResumeRequest | None = None,
     gateway: str | None = None,
+    web: str | None = None,
     groot: str | None = None,
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
@@ -170,6 +171,7 @@ def make_runner(
         world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
         trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
         gateway=parse_address(gateway) if gateway is not None else None,
+        web=web_address(web) if web is not None else None,
         groot=groot_address(groot) if groot is not None else None, load=load, on_event=on_event, on_progress=on_progress,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip

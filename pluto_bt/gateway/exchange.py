@@ -10,7 +10,7 @@ from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
 from pluto_bt.gateway.requests import Get, Log, ShowModules, ShowTree, Why
-from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Stamped, Up, Watch, Welcome, pack_value
+from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamped, Up, Watch, Welcome, pack_value
 
 REQUESTS_A_STEP = 64
 QUEUE = 16 * 1024
@@ -33,7 +33,7 @@ class Exchange:
         self._event_seq = 0
         self._batch_s = float("-inf")
 
-    def welcome(self, token: str, limits: Limits, first_client: int) -> Welcome:
+    def welcome(self, token: str, limits: Limits, first_client: int, scenery: Scenery | None = None) -> Welcome:
         """The first frame for a gateway; what it is sent begins anew."""
         self._queue.clear()
         self._inbox.clear()
@@ -41,7 +41,7 @@ class Exchange:
         self._sent_seq.clear()
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
-        return Welcome(self._port.name, self._port.now_s(), tuple(self._port.topics()), token, limits, first_client)
+        return Welcome(self._port.name, self._port.now_s(), tuple(self._port.topics()), token, limits, first_client, scenery)
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""

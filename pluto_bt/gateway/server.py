@@ -6,7 +6,7 @@ import asyncio
 import socket
 from collections import deque
 from collections.abc import Iterable
-from typing import cast
+from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
 from pluto_bt.gateway.session import Session
@@ -138,12 +138,19 @@ class ClientProtocol(asyncio.Protocol):
             self._transport.write_eof()
 
 
+class Served(Protocol):
+    """A client as the server sees it, whatever carries his bytes."""
+
+    def flush(self) -> None:
+        """Something of his may have to be sent."""
+
+
 class Server:
-    """The clients of one listening socket."""
+    """The clients of one gateway process: those of its listening socket, and those whom the web console brings."""
 
     def __init__(self, hub: Hub) -> None:
         self.hub = hub
-        self.clients: dict[int, ClientProtocol] = {}
+        self.clients: dict[int, Served] = {}
 
     async def listen(self, listener: socket.socket) -> None:
         """Take connections."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from typing import Any, get_type_hints
 
 import msgspec
@@ -50,6 +51,8 @@ def _field(name: str, value: Any) -> str:
         if name in _ROW_NAMES:
             return "".join(_row(_ROW_NAMES[name], item) for item in value)
         return f"<{name}>{numbers(value)}</{name}>"
+    if isinstance(value, bytes):
+        return f"<{name}>{base64.b64encode(value).decode()}</{name}>"
     return f"<{name}>{escape(scalar(value)) if isinstance(value, str) else scalar(value)}</{name}>"
 
 
@@ -63,6 +66,8 @@ def _statuses(codes: tuple[int, ...]) -> str:
 
 
 def _type_name(hint: Any) -> str:
+    if hint is bytes:
+        return "base64"
     if hint in (int, float, bool, str):
         return str(hint.__name__)
     text = str(hint)

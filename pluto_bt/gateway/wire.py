@@ -48,8 +48,15 @@ class Watch(Frame, frozen=True):
     topics: tuple[str, ...]
 
 
+class Scenery(msgspec.Struct, frozen=True):
+    """What the web console draws and what does not change: JSON of the map and the robot, and the pictures (PNG) that it names."""
+
+    json: bytes
+    pictures: dict[str, bytes] = {}
+
+
 class Welcome(Frame, frozen=True):
-    """Down, first: what the gateway must know."""
+    """Down, first: what the gateway must know; `scenery` only where there is a web console."""
 
     robot: str
     now_s: float
@@ -57,6 +64,7 @@ class Welcome(Frame, frozen=True):
     token: str
     limits: Limits
     first_client: int
+    scenery: Scenery | None = None
 
 
 class Stamped(msgspec.Struct, frozen=True, gc=False):

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.behaviours.surroundings import Surroundings
-from pluto_bt.blackboard import Snapshot
+from pluto_bt.blackboard import Publisher, Snapshot
 from pluto_bt.blackboard.codes import CommandType, MotionCommand, MotionStatus, MovetoStatus
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, Message, Pair, PathState
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
@@ -37,6 +37,7 @@ class RobotLink:
         self._surroundings: Surroundings | None = None
         self._navigation: Navigation | None = None
         self._views: ScanViews | None = None
+        self._path: Publisher | None = None
         self._goal_s = -AMENDED_WITHIN_S
 
     @property
@@ -140,6 +141,12 @@ class RobotLink:
     def move_arm(self, share: float) -> None:
         """Post a command to the arm."""
         self._post("arm", SOURCE, ActuatorState(self.now_s(), 0, (share, 0.0)))
+
+    def show_path(self, points: FloatArray) -> None:
+        """The path that is followed, as the topic `map/path`."""
+        self._path = self._path or self._context.board.publisher("map/path", "executive")
+        now_s = self.now_s()
+        self._path.put(PathState(now_s, tuple(points.ravel().tolist())), now_s)
 
     def read_alarms(self) -> None:
         """Leave a letter for the module `alarms`."""

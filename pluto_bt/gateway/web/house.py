@@ -1,0 +1,98 @@
+"""What every console page is served with: the files of the page, and the rules at the door that keep other pages and programs out."""
+
+from __future__ import annotations
+
+import hmac
+import ipaddress
+from collections.abc import Awaitable, Callable
+from importlib import resources
+
+from aiohttp import web
+
+from pluto_bt.gateway.wire import Scenery
+
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+HEADERS = {
+    "Content-Security-Policy": "default-src 'self'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "X-Frame-Options": "DENY",
+    "Referrer-Policy": "no-referrer",
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Cross-Origin-Resource-Policy": "same-origin",
+    "Cache-Control": "no-store",
+}
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+def make_app(scenery: Scenery, token: str = "") -> web.Application:
+    """The page and its scenery; `token` guards the scenery, the page itself says nothing of the robot."""
+    app = web.Application(middlewares=[at_the_door])
+    app.on_response_prepare.append(_dress)
+    for path, (body, kind) in page_files().items():
+        app.router.add_get(f"/{path}".removesuffix("index.html"), _file(body, kind))
+
+    async def scene(request: web.Request) -> web.Response:
+        require_token(request, token)
+        return web.Response(body=scenery.json, content_type="application/json", charset="utf-8")
+
+    async def picture(request: web.Request) -> web.Response:
+        require_token(request, token)
+        body = scenery.pictures.get(request.match_info["name"])
+        if body is None:
+            raise web.HTTPNotFound
+        return web.Response(body=body, content_type="image/png")
+
+    app.router.add_get("/scenery.json", scene)
+    app.router.add_get("/pictures/{name}", picture)
+    return app
+
+
+def page_files() -> dict[str, tuple[bytes, str]]:
+    """The files of the page by name, each with its type."""
+    folder = resources.files("pluto_bt.gateway.web") / "static"
+    files = [entry for entry in folder.iterdir() if "." in entry.name]
+    kinds = {entry.name: TYPES.get(entry.name[entry.name.rindex(".") :]) for entry in files}
+    return {entry.name: (entry.read_bytes(), kind) for entry in files if (kind := kinds[entry.name]) is not None}
+
+
+@web.middleware
+async def at_the_door(request: web.Request, handler: Handler) -> web.StreamResponse:
+    """Refuse what another page sends: a foreign Origin, and a Host that is a name which somebody else may have pointed here (DNS rebinding)."""
+    if not is_own_host(request.host):
+        raise web.HTTPForbidden(text=f'Host "{request.host}" is not this robot: open the console by its address, or as localhost\n')
+    origin = request.headers.get("Origin")
+    is_socket = request.headers.get("Upgrade", "").lower() == "websocket"
+    if (origin is not None or is_socket) and origin != f"{request.scheme}://{request.host}":
+        raise web.HTTPForbidden(text="the Origin is not this console\n")
+    return await handler(request)
+
+
+def is_own_host(host: str) -> bool:
+    """True for `localhost` and addresses, with or without a port; names of the world can be made to mean any address."""
+    name = host[: host.rindex("]") + 1].strip("[]") if host.startswith("[") and "]" in host else host.partition(":")[0]
+    if name.lower() == "localhost":
+        return True
+    try:
+        ipaddress.ip_address(name)
+    except ValueError:
+        return False
+    return True
+
+
+def require_token(request: web.Request, token: str) -> None:
+    """Raises: HTTPUnauthorized if there is a token and the request does not carry it."""
+    given = request.headers.get("Authorization", "").removeprefix("Bearer ")
+    if token and not hmac.compare_digest(given.encode(), token.encode()):
+        raise web.HTTPUnauthorized(text="the token is not the one this gateway was started with\n")
+
+
+async def _dress(request: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update(HEADERS)
+    response.headers.pop("Server", None)
+
+
+def _file(body: bytes, kind: str) -> Handler:
+    async def serve(request: web.Request) -> web.Response:
+        return web.Response(body=body, content_type=kind, charset="utf-8")
+
+    return serve
