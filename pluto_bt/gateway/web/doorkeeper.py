@@ -6,6 +6,7 @@ import asyncio
 import socket
 
 from aiohttp import web
+from aiohttp.typedefs import Middleware
 from aiohttp.web_protocol import RequestHandler
 
 from pluto_bt.gateway.web.house import Handler
@@ -20,7 +21,7 @@ class Doorkeeper:
     """Serves `app` on a socket until the loop ends."""
 
     def __init__(self, app: web.Application) -> None:
-        app.middlewares.append(web.middleware(self._note))
+        app.middlewares.append(self._noting())
         self._runner = web.AppRunner(app, access_log=None, keepalive_timeout=PATIENCE_S, lingering_time=0.5)
         self._busy: set[int] = set()  # ids of the connections whose request is being answered
         self._since_s: dict[RequestHandler, float] = {}
@@ -43,14 +44,18 @@ class Doorkeeper:
         self._since_s[connection] = asyncio.get_running_loop().time()
         return connection
 
-    async def _note(self, request: web.Request, handler: Handler) -> web.StreamResponse:
-        connection = request.protocol
-        self._busy.add(id(connection))
-        try:
-            return await handler(request)
-        finally:
-            self._busy.discard(id(connection))
-            self._since_s[connection] = asyncio.get_running_loop().time()
+    def _noting(self) -> Middleware:
+        @web.middleware
+        async def note(request: web.Request, handler: Handler) -> web.StreamResponse:
+            connection = request.protocol
+            self._busy.add(id(connection))
+            try:
+                return await handler(request)
+            finally:
+                self._busy.discard(id(connection))
+                self._since_s[connection] = asyncio.get_running_loop().time()
+
+        return note
 
     def _round(self, now_s: float) -> None:
         for connection, since_s in list(self._since_s.items()):

@@ -1,0 +1,262 @@
+// What moves on the map: the robot and what it senses, was told and means to do. What is too old to trust is drawn grey.
+
+import { ACCENT, ACCENT_DIM, ACCENT_FAINT, BAD, CELLS, ECHO, LASER, OLD, SEEN, WARN } from "./colours.js";
+import { outlineOf } from "./map_world.js";
+import { list } from "./wire.js";
+
+const SIGMAS_95 = 2.4477; // of a plane error
+const TRAIL_POINTS = 4000, TRAIL_STEP_M = 0.05, JUMP_M = 1.0;
+const NO_COMMAND = 0, GOTO = 2, MOVETO = 42;
+
+/** The pose, [x, y, theta]. */
+function poseOf(store) {
+  const pose = store.fields("Localization/Pose")?.pose;
+  return pose ? [pose[0], pose[1], pose[3]] : null;
+}
+
+/** From a point in a frame to the map. */
+function placed([x, y, theta], px, py) {
+  const c = Math.cos(theta), s = Math.sin(theta);
+  return [x + c * px - s * py, y + s * px + c * py];
+}
+
+export class Trail {
+  constructor() {
+    this.points = [];
+  }
+
+  add(pose, stamp_s) {
+    const last = this.points.at(-1);
+    if (last && stamp_s < last[2]) this.points = []; // a recording went back, or another run began
+    const far = last ? Math.hypot(pose[0] - last[0], pose[1] - last[1]) : Infinity;
+    if (far < TRAIL_STEP_M) return;
+    this.points.push([pose[0], pose[1], stamp_s, far > JUMP_M]);
+    if (this.points.length > TRAIL_POINTS) this.points.splice(0, TRAIL_POINTS / 4);
+  }
+
+  draw(context, view) {
+    view.inMetres(context);
+    context.beginPath();
+    for (const [x, y, , isNew] of this.points) isNew ? context.moveTo(x, y) : context.lineTo(x, y);
+    context.strokeStyle = ACCENT_DIM;
+    context.lineWidth = 1.5 / view.scale;
+    context.stroke();
+  }
+}
+
+export function drawRobot(context, view, store, robot) {
+  const pose = poseOf(store);
+  if (!pose) return;
+  const colour = store.isStale("Localization/Pose") ? OLD : ACCENT;
+  drawDoubt(context, view, pose, store.fields("Localization/Pose").covariance, colour);
+  view.inMetres(context);
+  context.translate(pose[0], pose[1]);
+  context.rotate(pose[2]);
+  const outline = outlineOf(robot.outline_m);
+  context.fillStyle = "rgba(12, 15, 19, 0.75)";
+  context.fill(outline);
+  context.fillStyle = ACCENT_FAINT;
+  context.fill(outline);
+  context.lineWidth = 2 / view.scale;
+  context.strokeStyle = colour;
+  context.stroke(outline);
+  const front = Math.max(...robot.outline_m.map((point) => point[0])), back = Math.min(...robot.outline_m.map((point) => point[0]));
+  drawArrow(context, front, colour);
+  const bumper = store.fields("ATRV2/Bumper");
+  for (const [isPressed, at] of [[bumper?.front, front], [bumper?.back, back]]) if (isPressed) drawBumper(context, view, robot, at);
+}
+
+function drawArrow(context, front, colour) {
+  const size = Math.max(0.12, 0.32 * front);
+  context.beginPath();
+  context.moveTo(front * 0.78, 0);
+  context.lineTo(front * 0.78 - size, size * 0.6);
+  context.lineTo(front * 0.78 - size * 0.7, 0);
+  context.lineTo(front * 0.78 - size, -size * 0.6);
+  context.closePath();
+  context.fillStyle = colour;
+  context.fill();
+}
+
+function drawBumper(context, view, robot, at) {
+  const half = Math.max(...robot.outline_m.map((point) => point[1]));
+  context.beginPath();
+  context.moveTo(at, -half);
+  context.lineTo(at, half);
+  context.strokeStyle = BAD;
+  context.lineWidth = 6 / view.scale;
+  context.stroke();
+}
+
+/** The ellipse that holds the place with 95 %. */
+function drawDoubt(context, view, pose, covariance, colour) {
+  if (!Array.isArray(covariance)) return;
+  const n = Math.round(Math.sqrt(covariance.length));
+  const xx = covariance[0], xy = covariance[1], yy = covariance[n + 1];
+  const mean = (xx + yy) / 2, spread = Math.hypot((xx - yy) / 2, xy);
+  const long = SIGMAS_95 * Math.sqrt(Math.max(mean + spread, 0)), short = SIGMAS_95 * Math.sqrt(Math.max(mean - spread, 0));
+  if (!(long > 0)) return;
+  view.inMetres(context);
+  context.beginPath();
+  context.ellipse(pose[0], pose[1], long, Math.max(short, 1e-3), 0.5 * Math.atan2(2 * xy, xx - yy), 0, 2 * Math.PI);
+  context.setLineDash([4 / view.scale, 4 / view.scale]);
+  context.strokeStyle = colour;
+  context.lineWidth = 1 / view.scale;
+  context.stroke();
+  context.setLineDash([]);
+}
+
+/** Simulation: where it really is, if that is not where it believes to be. */
+export function drawTruth(context, view, store, robot) {
+  const truth = store.fields("world/state")?.pose_map_robot, pose = poseOf(store);
+  if (!truth || !pose || Math.hypot(truth[0] - pose[0], truth[1] - pose[1]) < 0.15) return;
+  view.inMetres(context);
+  context.translate(truth[0], truth[1]);
+  context.rotate(truth[2]);
+  context.setLineDash([3 / view.scale, 3 / view.scale]);
+  context.strokeStyle = OLD;
+  context.lineWidth = 1.2 / view.scale;
+  context.stroke(outlineOf(robot.outline_m));
+  context.setLineDash([]);
+}
+
+export function drawLaser(context, view, store, robot) {
+  const scan = store.get("sick/scan"), at = store.fields("Localization/Laser_Pose")?.pose;
+  if (!scan || !at) return;
+  const { angle_min, angle_step } = scan.fields, ranges = list(scan.fields.ranges);
+  const [x, y, , theta, tilt] = at, isOld = store.isStale("sick/scan"); // theta holds the pan of the wrist already
+  const seen = new Path2D(), points = [], level = Math.cos(tilt), c = Math.cos(theta), s = Math.sin(theta);
+  seen.moveTo(x, y);
+  ranges.forEach((range, i) => {
+    if (!(range > 0)) return;
+    const angle = angle_min + i * angle_step, far = Math.min(range, 40);
+    const ahead = far * Math.cos(angle) * level, left = far * Math.sin(angle);
+    const px = x + c * ahead - s * left, py = y + s * ahead + c * left;
+    seen.lineTo(px, py);
+    if (range < robot.laser_max_m - 0.01) points.push([px, py]);
+  });
+  view.inMetres(context);
+  context.fillStyle = isOld ? "rgba(102, 114, 126, 0.05)" : SEEN;
+  context.fill(seen);
+  view.inPixels(context);
+  context.fillStyle = isOld ? OLD : LASER;
+  for (const [px, py] of points) {
+    const [sx, sy] = view.toScreen(px, py);
+    context.fillRect(sx - 1, sy - 1, 2, 2);
+  }
+}
+
+export function drawSonar(context, view, store, robot) {
+  const ranges = list(store.fields("ATRV2/Sonar")?.ranges_m), pose = poseOf(store);
+  if (!pose) return;
+  view.inMetres(context);
+  context.strokeStyle = store.isStale("ATRV2/Sonar") ? OLD : ECHO;
+  context.lineWidth = 2.5 / view.scale;
+  robot.sonars.forEach(([x, y, theta], i) => {
+    const range = ranges[i];
+    if (!(range >= 0) || range >= robot.sonar_max_m - 0.01) return;
+    const [px, py] = placed(pose, x, y), angle = pose[2] + theta;
+    context.beginPath();
+    context.arc(px, py, Math.max(range, 0.02), angle - robot.sonar_cone_rad / 2, angle + robot.sonar_cone_rad / 2);
+    context.stroke();
+  });
+}
+
+export function drawPath(context, view, store) {
+  const points = list(store.fields("map/path")?.points_m);
+  if (points.length < 4) return;
+  view.inMetres(context);
+  context.beginPath();
+  for (let i = 0; i < points.length; i += 2) context.lineTo(points[i], points[i + 1]);
+  context.strokeStyle = ACCENT;
+  context.globalAlpha = 0.8;
+  context.lineWidth = 2 / view.scale;
+  context.setLineDash([8 / view.scale, 5 / view.scale]);
+  context.stroke();
+  context.setLineDash([]);
+  context.globalAlpha = 1;
+}
+
+/** Where the chain is told to go: the goal of moveto, else that of a goto that is not stopped. */
+export function goalOf(store) {
+  const motion = store.fields("motion/command"), path = list(store.fields("map/path")?.points_m);
+  if (path.length >= 2) return path.slice(-2);
+  if (!motion || motion.flags === NO_COMMAND) return null;
+  return motion.flags === MOVETO || (motion.flags > 0 && motion.flags < 40 && motion.flags % 10 === GOTO) ? motion.position : null;
+}
+
+export function drawGoal(context, view, store) {
+  const goal = goalOf(store), pose = poseOf(store);
+  if (!goal) return;
+  view.inPixels(context);
+  const [x, y] = view.toScreen(...goal);
+  context.strokeStyle = ACCENT;
+  context.lineWidth = 2;
+  if (pose && list(store.fields("map/path")?.points_m).length < 4) {
+    context.globalAlpha = 0.45;
+    context.setLineDash([2, 5]);
+    context.beginPath();
+    context.moveTo(...view.toScreen(pose[0], pose[1]));
+    context.lineTo(x, y);
+    context.stroke();
+    context.setLineDash([]);
+    context.globalAlpha = 1;
+  }
+  target(context, x, y, 8);
+}
+
+export function drawChosen(context, view, store, { x, y }) {
+  view.inPixels(context);
+  context.strokeStyle = WARN;
+  context.lineWidth = 2;
+  target(context, ...view.toScreen(x, y), 12);
+}
+
+function target(context, x, y, radius) {
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  for (const [dx, dy] of [[1, 0], [0, 1], [-1, 0], [0, -1]]) {
+    context.moveTo(x + dx * radius * 0.5, y + dy * radius * 0.5);
+    context.lineTo(x + dx * radius * 1.5, y + dy * radius * 1.5);
+  }
+  context.stroke();
+}
+
+export function drawRectangle(context, view, store) {
+  const fields = store.fields("motion/rectangle");
+  if (!fields || !(fields.base_m > 0)) return;
+  const { base_m: b, height_m: h, home } = fields;
+  view.inMetres(context);
+  context.setLineDash([10 / view.scale, 6 / view.scale]);
+  context.strokeStyle = ACCENT_DIM;
+  context.lineWidth = 1.5 / view.scale;
+  context.stroke(outlineOf([[0, -b], [h, -b], [h, b], [0, b]].map(([x, y]) => placed(home, x, y))));
+  context.setLineDash([]);
+}
+
+/** What a job has seen and covered; its frame is dead reckoning, so it is placed by the two poses of now. */
+export function drawCells(context, view, store) {
+  const value = store.get("map/local"), map = store.fields("Localization/Pose")?.pose, own = store.fields("Localization/Dead-Reckoning")?.pose;
+  if (!value || !map || !own || !value.fields.rows || store.fields("motion/job")?.state !== "running") return;
+  const { rows, columns, x_m, y_m, cell_m } = value.fields;
+  value.picture ??= cellPicture(value.fields);
+  const turn = map[3] - own[3];
+  view.inMetres(context);
+  context.translate(map[0], map[1]);
+  context.rotate(turn);
+  context.translate(x_m - own[0], y_m - own[1]);
+  context.transform(0, cell_m, cell_m, 0, 0, 0); // the picture's x are columns (y of the map), its y are rows (x)
+  context.imageSmoothingEnabled = false;
+  context.drawImage(value.picture, 0, 0, columns, rows);
+}
+
+function cellPicture({ cells, rows, columns }) {
+  const bytes = Uint8Array.from(atob(cells), (letter) => letter.charCodeAt(0));
+  const canvas = document.createElement("canvas");
+  canvas.width = columns;
+  canvas.height = rows;
+  const context = canvas.getContext("2d"), image = context.createImageData(columns, rows);
+  bytes.forEach((cell, i) => image.data.set(CELLS[cell] ?? CELLS[0], 4 * i));
+  context.putImageData(image, 0, 0);
+  return canvas;
+}
