@@ -84,15 +84,17 @@ export class Box {
   }
 
   show(text) {
-    const before = new Set(this.store.values.keys());
+    const before = new Set(this.store.values.keys()), events = [];
     this.tell("moment");
     for (const element of elements(text)) {
       if (element.tagName === "value") {
         const one = value(element);
         before.delete(one.topic);
         this.store.put(one);
-      } else this.tell(element.tagName, { ...attributes(element), rows: [...element.children].map(attributes) });
+      } else if (element.tagName === "event") events.push(attributes(element));
+      else this.tell(element.tagName, { ...attributes(element), rows: [...element.children].map(attributes) });
     }
     for (const topic of before) this.store.drop(topic);
+    this.tell("events", events);
   }
 }

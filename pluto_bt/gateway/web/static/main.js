@@ -67,11 +67,8 @@ function showBox({ scenery, store, tree, events }) {
   const box = new Box(store, scenery), bar = new Bar(store, scenery.robot, null), why = Object.create(Why.prototype);
   why.seen = "";
   new Modules(null, store);
-  box.on("moment", () => {
-    events.clear();
-    bar.clock_s = 0;
-  });
-  box.on("event", (event) => events.add(event));
+  box.on("events", (list) => events.replace(list));
+  box.on("moment", () => { bar.clock_s = 0; });
   box.on("why", (answer) => why.show(answer.moving === "true", answer.rows, box.wanted_s));
   tree.clock = () => box.wanted_s;
   const map = new MapView(byId("map"), store, scenery, () => {});

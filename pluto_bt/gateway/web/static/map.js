@@ -13,7 +13,7 @@ export class MapView {
     Object.assign(this, { store, scenery, picture: null, goal: null, isDirty: true });
     this.context = canvas.getContext("2d");
     this.layers = Object.fromEntries(Object.keys(LAYERS).map((name) => [name, true]));
-    this.trail = new Trail();
+    this.trail = new Trail(scenery.track);
     this.view = new View(canvas, () => { this.isDirty = true; }, (x_m, y_m) => chosen(...this.snapped(x_m, y_m)));
     for (const topic of DRAWN) store.on(topic, () => { this.isDirty = true; });
     store.on("Localization/Pose", ({ fields, stamp_s }) => this.trail.add(fields.pose, stamp_s));

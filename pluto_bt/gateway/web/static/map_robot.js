@@ -21,11 +21,17 @@ function placed([x, y, theta], px, py) {
 }
 
 export class Trail {
-  constructor() {
+  /** `track`: the whole way of a recording, [x, y, t]; only what lies behind is drawn. */
+  constructor(track = null) {
+    this.track = track;
     this.points = [];
   }
 
   add(pose, stamp_s) {
+    if (this.track) {
+      this.points = this.track.filter((point) => point[2] <= stamp_s);
+      return;
+    }
     const last = this.points.at(-1);
     if (last && stamp_s < last[2]) this.points = []; // a recording went back, or another run began
     const far = last ? Math.hypot(pose[0] - last[0], pose[1] - last[1]) : Infinity;

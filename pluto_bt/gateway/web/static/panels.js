@@ -111,9 +111,15 @@ export class Events {
     show(byId("events-count"), number > 0);
   }
 
-  clear() {
+  /** Show these, and no others. */
+  replace(events) {
+    const last = events.map(({ seq }) => seq).join();
+    if (last === this.last) return;
+    this.last = last;
     this.seen.clear();
     byId("events").replaceChildren();
+    for (const event of events) this.add(event);
+    this.count(0);
   }
 }
 
