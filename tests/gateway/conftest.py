@@ -9,7 +9,7 @@ import pytest
 
 from pluto_bt.gateway.client import Client
 from pluto_bt.gateway.limits import Limits
-from pluto_bt.gateway.link import GatewayLink
+from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.runtime.clock import MonotonicClock
 
@@ -19,9 +19,9 @@ from .robot import FakeRobot
 class Running:
     """A link that a thread steps, as the scheduler would."""
 
-    def __init__(self) -> None:
+    def __init__(self, console: Console | None = None, token: str = "") -> None:
         self.robot = FakeRobot()
-        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), limits=Limits(linger_s=0.3))
+        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), token, Limits(linger_s=0.3), console)
         self.clock = MonotonicClock()
         self.link.start(0.0)
         self.on_step = lambda: None
@@ -33,6 +33,26 @@ class Running:
         address = self.link.address
         assert address is not None
         return address
+
+    @property
+    def url(self) -> str:
+        """Where the web console is."""
+        assert self.link.console_address is not None
+        return f"http://{self.link.console_address}"
+
+    def renew(self) -> None:
+        """Another robot behind the same gateway, in the place of the last one."""
+        events = self.robot.events  # their numbers must go on
+        self.robot.__init__()  # type: ignore[misc]
+        self.robot.events = events
+        self.robot.time_s = self.clock.now_s()
+        self.on_step = lambda: None
+
+    def wait_until_nobody_is_there(self) -> None:
+        """Until the executive knows that every client is gone, and what that entails is done."""
+        exchange = self.link._exchange
+        while exchange._watched or exchange._desk._leases.held is not None:
+            pass
 
     def pump(self) -> None:
         """Begin to step."""

@@ -135,7 +135,6 @@ export class Drive {
   }
 
   showReal([v, w]) {
-    if (byId("panel-drive").hidden) return;
     say(byId("real-v"), `${v.toFixed(2)} m/s`);
     say(byId("real-w"), `${(w * 57.3).toFixed(0)} °/s`);
   }

@@ -38,6 +38,7 @@ async function begin() {
   const parts = { scenery, store, tabs, tree, events, token };
   parts.map = scenery.mode === "box" ? showBox(parts) : showRobot(parts);
   setUpMap(parts);
+  window.pluto = { map: parts.map, store }; // for who looks into the page by hand, and for its tests
   if (scenery.grid) parts.map.picture = await fetchPicture(scenery.grid.picture, token);
   parts.map.isDirty = true;
 }
@@ -53,7 +54,8 @@ function showRobot({ scenery, store, tabs, tree, events, token }) {
   tree.clock = () => bar.now_s;
   new Halt(link, store, lease);
   new Mission(link, store);
-  new Modules(link, store);
+  const modules = new Modules(link, store);
+  tabs.onOpen("modules", () => modules.look());
   new Drive(link, store, lease, orders, scenery.robot);
   const params = new Params(link, lease);
   tabs.onOpen("params", () => params.load());
@@ -63,10 +65,11 @@ function showRobot({ scenery, store, tabs, tree, events, token }) {
   return map;
 }
 
-function showBox({ scenery, store, tree, events }) {
+function showBox({ scenery, store, tabs, tree, events }) {
   const box = new Box(store, scenery), bar = new Bar(store, scenery.robot, null), why = Object.create(Why.prototype);
   why.seen = "";
-  new Modules(null, store);
+  const modules = new Modules(null, store);
+  tabs.onOpen("modules", () => modules.look());
   box.on("events", (list) => events.replace(list));
   box.on("moment", () => { bar.clock_s = 0; });
   box.on("why", (answer) => why.show(answer.moving === "true", answer.rows, box.wanted_s));

@@ -6,6 +6,7 @@ import { list } from "./wire.js";
 
 const SIGMAS_95 = 2.4477; // of a plane error
 const TRAIL_POINTS = 4000, TRAIL_STEP_M = 0.05, JUMP_M = 1.0;
+const TRUTH_S = 0.3; // truth and belief are compared only at about the same time
 const NO_COMMAND = 0, GOTO = 2, MOVETO = 42;
 
 /** The pose, [x, y, theta]. */
@@ -115,7 +116,8 @@ function drawDoubt(context, view, pose, covariance, colour) {
 /** Simulation: where it really is, if that is not where it believes to be. */
 export function drawTruth(context, view, store, robot) {
   const truth = store.fields("world/state")?.pose_map_robot, pose = poseOf(store);
-  if (!truth || !pose || Math.hypot(truth[0] - pose[0], truth[1] - pose[1]) < 0.15) return;
+  const apart_s = truth && pose ? Math.abs(store.get("world/state").stamp_s - store.get("Localization/Pose").stamp_s) : Infinity;
+  if (apart_s > TRUTH_S || Math.hypot(truth[0] - pose[0], truth[1] - pose[1]) < 0.15) return;
   view.inMetres(context);
   context.translate(truth[0], truth[1]);
   context.rotate(truth[2]);

@@ -125,13 +125,14 @@ export class Events {
 
 export class Modules {
   constructor(link, store) {
-    Object.assign(this, { link, rows: new Map() });
-    store.on("modules", ({ fields }) => this.take(fields.modules ?? []));
+    Object.assign(this, { link, store, rows: new Map() });
+    store.on("modules", () => this.look());
   }
 
-  take(modules) {
+  /** Show what is known, if anybody looks. */
+  look() {
     if (byId("panel-modules").hidden) return;
-    for (const module of modules) {
+    for (const module of this.store.fields("modules")?.modules ?? []) {
       const row = this.rows.get(module.name) ?? this.add(module.name);
       row.element.dataset.state = module.state;
       say(row.state, `${module.state === "running" ? "●" : module.state === "stopped" ? "○" : "✕"} ${module.state}`);
