@@ -1,7 +1,7 @@
 // The bar at the top and the figures on the map, all with the age of what they show.
 
 import { age, byId, clock, degrees, say, show } from "./dom.js";
-import { missionWords } from "./panels.js";
+import { missionReason, missionWords } from "./panels.js";
 
 export class Bar {
   constructor(store, robot, link) {
@@ -30,6 +30,7 @@ export class Bar {
     this.gauge("battery", "ATRV2/Battery", () => this.battery());
     const mission = store.fields("mission/state");
     say(byId("mission-chip"), mission ? missionWords(mission) : "–");
+    say(byId("mission-reason"), mission ? missionReason(mission) : "");
     byId("gauge-mission").dataset.state = mission?.state ?? "";
     this.pose();
     if (this.link) this.linkState();

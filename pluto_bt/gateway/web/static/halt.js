@@ -3,6 +3,7 @@
 import { byId, say, show, toast } from "./dom.js";
 
 const STANDS_MPS = 0.01, STANDS_RADPS = 0.01, TOLD_MS = 6000;
+const AT_REST = matchMedia("(pointer: coarse)").matches ? "for anyone, at any time" : "space bar";
 
 export class Halt {
   constructor(link, store, lease) {
@@ -65,7 +66,7 @@ export class Halt {
   }
 
   tell(text, mood = "") {
-    say(byId("stop-note"), text || "space bar");
+    say(byId("stop-note"), text || AT_REST);
     byId("stop").dataset.mood = mood;
   }
 

@@ -27,6 +27,8 @@ export class Tabs {
       one.tabIndex = one === tab ? 0 : -1;
       show(byId(one.getAttribute("aria-controls")), one === tab);
     }
+    document.body.dataset.tab = tab.id.replace("tab-", "");
+    document.querySelector(".panels").scrollTop = 0;
     this.listeners.get(tab.id.replace("tab-", ""))?.();
   }
 
@@ -41,8 +43,12 @@ export class Tabs {
   }
 }
 
-export function missionWords({ state, reason }) {
-  return `${MISSION_SIGNS[state] ?? "?"} ${state}${reason && state !== "running" ? ` · ${reason}` : ""}`;
+export function missionWords({ state }) {
+  return `${MISSION_SIGNS[state] ?? "?"} ${state}`;
+}
+
+export function missionReason({ state, reason }) {
+  return reason && state !== "running" ? ` · ${reason}` : "";
 }
 
 export class Mission {
@@ -55,7 +61,7 @@ export class Mission {
   }
 
   take(fields) {
-    say(byId("mission-state"), missionWords(fields));
+    say(byId("mission-state"), missionWords(fields) + missionReason(fields));
     say(byId("mission-step"), [fields.name, fields.step].filter(Boolean).join(" · "));
     const can = { pause: fields.state === "running", resume: fields.state === "paused", abort: ["running", "paused", "stopping"].includes(fields.state) };
     for (const button of byId("mission-ops").children) button.disabled = !can[button.dataset.op];
@@ -100,7 +106,8 @@ export class Events {
     const list = byId("events"), [sign, word] = LEVELS[level] ?? ["·", level];
     const line = make("li", { "data-level": level, title: code }, make("time", {}, clock(Number(time))), make("span", { class: "sign", role: "img", "aria-label": word }, sign),
       make("span", { class: "source" }, source), make("span", { class: "text" }, text));
-    list.prepend(line);
+    line.seq = Number(seq);
+    list.insertBefore(line, [...list.children].find((one) => one.seq < line.seq) ?? null); // the log of before comes after the first live ones
     while (list.children.length > EVENTS_KEPT) list.lastChild.remove();
     if (level !== "info" && byId("panel-events").hidden) this.count(this.unread + 1);
   }
