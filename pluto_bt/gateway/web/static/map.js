@@ -8,14 +8,17 @@ import { View } from "./view.js";
 const LAYERS = { laser: "Laser", sonar: "Sonar", trail: "Trail", plan: "Path, goal", names: "Names" };
 const DRAWN = ["Localization/Pose", "sick/scan", "ATRV2/Sonar", "ATRV2/Bumper", "map/path", "motion/rectangle", "map/local", "motion/command", "avoidance/command", "world/state"];
 
+const NEWS_MS = 100; // what the robot says is drawn so often at most; who moves the map sees every frame
+
 export class MapView {
   constructor(canvas, store, scenery, chosen) {
-    Object.assign(this, { store, scenery, picture: null, goal: null, isDirty: true });
-    this.context = canvas.getContext("2d");
+    Object.assign(this, { store, scenery, picture: null, goal: null, isDirty: true, hasNews: false, drawn_ms: 0, seen: "" });
+    this.context = canvas.getContext("2d", { alpha: false });
+    this.still = document.createElement("canvas"); // what stands still, drawn anew only when the view changes
     this.layers = Object.fromEntries(Object.keys(LAYERS).map((name) => [name, true]));
     this.trail = new Trail(scenery.track);
     this.view = new View(canvas, () => { this.isDirty = true; }, (x_m, y_m) => chosen(...this.snapped(x_m, y_m)));
-    for (const topic of DRAWN) store.on(topic, () => { this.isDirty = true; });
+    for (const topic of DRAWN) store.on(topic, () => { this.hasNews = true; });
     store.on("Localization/Pose", ({ fields, stamp_s }) => this.trail.add(fields.pose, stamp_s));
     this.view.resize();
     this.view.fit(padded(scenery.world.bounds_m));
@@ -56,20 +59,32 @@ export class MapView {
     requestAnimationFrame(this.frame);
     const pose = this.store.fields("Localization/Pose")?.pose;
     if (this.view.isFollowing && pose && this.view.box === null) this.view.centre(pose[0], pose[1]);
-    if (!this.isDirty || document.hidden) return;
-    this.isDirty = false;
+    const now_ms = performance.now();
+    if (document.hidden || !(this.isDirty || (this.hasNews && now_ms - this.drawn_ms >= NEWS_MS))) return;
+    Object.assign(this, { isDirty: false, hasNews: false, drawn_ms: now_ms });
     this.draw();
+  }
+
+  drawStill() {
+    const { view, scenery, layers, still } = this, { width, height } = this.context.canvas;
+    const seen = [view.x_m, view.y_m, view.scale, width, height, layers.names, Boolean(this.picture)].join();
+    if (seen === this.seen) return;
+    this.seen = seen;
+    Object.assign(still, { width, height });
+    const context = still.getContext("2d", { alpha: false });
+    context.fillStyle = GROUND;
+    context.fillRect(0, 0, width, height);
+    drawGrid(context, view);
+    if (this.picture) drawPicture(context, view, this.picture, scenery.grid);
+    drawWorld(context, view, scenery.world, layers.names);
   }
 
   draw() {
     const { context, view, store, scenery, layers } = this;
+    this.drawStill();
     context.setTransform(1, 0, 0, 1, 0, 0);
-    context.fillStyle = GROUND;
-    context.fillRect(0, 0, context.canvas.width, context.canvas.height);
-    drawGrid(context, view);
-    if (this.picture) drawPicture(context, view, this.picture, scenery.grid);
+    context.drawImage(this.still, 0, 0);
     drawCells(context, view, store);
-    drawWorld(context, view, scenery.world, layers.names);
     if (layers.plan) drawRectangle(context, view, store);
     if (layers.laser) drawLaser(context, view, store, scenery.robot);
     if (layers.sonar) drawSonar(context, view, store, scenery.robot);

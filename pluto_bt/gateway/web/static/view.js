@@ -1,6 +1,7 @@
 // Where the map is looked at from: metres to pixels and back, panning, zooming, following. y goes up.
 
 const NEAREST = 400, FARTHEST = 2, FOLLOWED = 50; // pixels a metre
+const ABOVE_PX = 54, BELOW_PX = 42; // taken by figures and buttons
 const TAP_PX = 8, TAP_MS = 600;
 
 export class View {
@@ -50,8 +51,9 @@ export class View {
     const [x0, y0, x1, y1] = box;
     this.box = box;
     this.x_m = (x0 + x1) / 2;
-    this.y_m = (y0 + y1) / 2;
-    this.scale = clamp(0.92 * Math.min(this.width / Math.max(x1 - x0, 1), this.height / Math.max(y1 - y0, 1)));
+    const free_px = Math.max(this.height - ABOVE_PX - BELOW_PX, 60);
+    this.scale = clamp(0.94 * Math.min(this.width / Math.max(x1 - x0, 1), free_px / Math.max(y1 - y0, 1)));
+    this.y_m = (y0 + y1) / 2 + (ABOVE_PX - BELOW_PX) / 2 / this.scale;
     this.changed();
   }
 
