@@ -21,6 +21,8 @@ from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.commands.option_values import groot_address, web_address
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.audit import default_path
 from pluto_bt.gateway.listen import parse_address
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.modules.journal_keeper import JournalKeeper
@@ -143,6 +145,8 @@ def make_runner(
     record: str | Path | None = None,
     resume: ResumeRequest | None = None,
     gateway: str | None = None,
+    gateway_access: Access | None = None,
+    gateway_audit: str | Path | None = None,
     web: str | None = None,
     groot: str | None = None,
     nodes: Sequence[type] = (),
@@ -168,10 +172,10 @@ def make_runner(
     if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
     options = Options(
-        world=inputs.world, robot=inputs.robot, map=inputs.map, start=inputs.start, seed=inputs.seed, max_time_s=max_time_s,
-        trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
-        gateway=parse_address(gateway) if gateway is not None else None,
-        web=web_address(web) if web is not None else None,
+        world=inputs.world, robot=inputs.robot, params_path=inputs.params, map=inputs.map, start=inputs.start, seed=inputs.seed,
+        max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
+        gateway=parse_address(gateway) if gateway is not None else None, gateway_access=gateway_access,
+        gateway_audit=Path(gateway_audit) if gateway_audit else default_path(), web=web_address(web) if web is not None else None,
         groot=groot_address(groot) if groot is not None else None, load=load, on_event=on_event, on_progress=on_progress,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip

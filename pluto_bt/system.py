@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox
 from pluto_bt.blackboard.messages import ActuatorState, Event
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.listen import Address
 from pluto_bt.guard import Guard
 from pluto_bt.maps.world import World
@@ -56,7 +58,7 @@ MODULES: tuple[Module, ...] = (
     Module("avoid",     "pluto_bt.modules.avoid:Avoid",           0.1,    "chain",      critical=True, needs=("drive",), wakes=("inbox:avoid",), budget_ms=10.0),
     Module("motion",    "pluto_bt.modules.motion:Motion",         0.1,    "chain",      critical=True, needs=("avoid",), wakes=("inbox:motion", "inbox:job"), budget_ms=5.0),
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
-    Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.05,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
+    Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.02,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
     Module("groot",     "pluto_bt.modules.groot:Groot",           1.0,    "gateway",    needs=("executive",), device="groot",               budget_ms=1.0),
     Module("recorder",  "pluto_bt.modules.recorder:Recorder",     0.5,    "recorder",   needs=("executive",), device="recorder",            budget_ms=20.0),
 )
@@ -81,6 +83,7 @@ class Options:
 
     world: World
     robot: RobotFile
+    params_path: Path | None = None
     map: World | None = None
     start: tuple[float, float, float] | None = None
     seed: int = 0
@@ -88,6 +91,8 @@ class Options:
     trace_path: Path | None = None
     has_gateway: bool = False
     gateway: Address | None = None
+    gateway_access: Access | None = None
+    gateway_audit: Path | None = None
     web: Address | None = None
     groot: Address | None = None
     record: RecordRequest | None = None
@@ -222,6 +227,14 @@ class System:
                 self.order_module(need, True)
         part.order(run)
         self.scheduler.waker(part.row)()
+
+    def tune(self, robot: RobotFile) -> None:
+        """Other parameters: each module takes them between two steps, what is made later begins with them. Thread-safe."""
+        self.context.platform = robot
+        for part in self._parts.values():
+            take = getattr(part.component, "tune", None)
+            if take is not None:
+                part.hand(partial(take, robot))
 
     def stop_robot(self, source: str) -> None:
         """Zero velocity at once, on every link."""

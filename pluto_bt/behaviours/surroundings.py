@@ -57,6 +57,10 @@ class Surroundings:
             self.map.covered[:] = 0
             self.openings = Openings(self.map)
 
+    def tune(self, parameters: MotionParameters) -> None:
+        """These parameters count from now on; the grids keep their cells and their reach."""
+        self.parameters = self.map.parameters = parameters
+
     def warm(self) -> None:
         """Use every kernel once, so that no later use waits for its compilation. For a memory that is then thrown away."""
         self.map.warm()

@@ -274,7 +274,7 @@ class Flag(Message, frozen=True, gc=False):
 
 
 class ModuleState(msgspec.Struct, frozen=True, gc=False):
-    """One row of `modules`."""
+    """One row of `modules`; `age_s` = since its last step when this was told."""
 
     name: str
     group: str
@@ -284,6 +284,7 @@ class ModuleState(msgspec.Struct, frozen=True, gc=False):
     overruns: int
     worst_ms: float
     text: str = ""
+    age_s: float = 0.0
 
 
 class ModulesState(Message, frozen=True, gc=False):

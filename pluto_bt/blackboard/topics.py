@@ -101,6 +101,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic("mission/state",                     MissionState,  "executive", 0.0,   0.0,  "the mission"),
     Topic("tree",                              TreeState,     "executive", 0.0,   0.0,  "the tree after each tick"),
     Topic("events",                            Event,         "executive", 0.0,   0.0,  "lines for operators", history=256),
+    Topic("operator/word",                     Flag,          "gateway",   0.0,   0.0,  "what an operator tells the mission by <set>, for missions that wait for a word"),
     Topic("modules",                           ModulesState,  "executive", 1.0,   0.0,  "every module with its state"),
     Topic("world/state",                       WorldState,    "world",     0.0,   0.0,  "simulation: the truth"),
     Topic("world/alarm",                       Flag,          "world",     0.0,   0.0,  "simulation: a flag that world scripts set"),

@@ -14,7 +14,9 @@ from pluto_bt.commands.plugins import load_plugins
 from pluto_bt.commands.world_checks import check_script, check_start, in_file
 from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
-from pluto_bt.modules.robot_file import RobotFile, load_robot_file
+from pluto_bt.modules.live_parameters import value_of
+from pluto_bt.modules.robot_file import RobotFile, load_robot_file, overlay_names
+from pluto_bt.runtime.parameters import shown
 from pluto_bt.source import Fault, Faults, InputError, Place
 from pluto_bt.trees.checks.world_words import check_world_words
 
@@ -34,6 +36,7 @@ class Request:
     port: Sequence[str] = ()
     seed: str | None = None
     set: Sequence[str] = ()
+    params: str | None = None
     plugin: Sequence[str] = ()
 
     @classmethod
@@ -58,6 +61,7 @@ class Inputs:
     platform: str = DEFAULT_PLATFORM
     settings: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
+    params: Path | None = None
 
 
 def add_input_options(parser: argparse.ArgumentParser) -> None:
@@ -71,6 +75,7 @@ def add_input_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", metavar="NAME=VALUE", action="append", default=[], help="an input of the main tree; may be repeated")
     parser.add_argument("--seed", metavar="N", help="seed of all randomness (default: the world's, else 0)")
     parser.add_argument("--set", metavar="PARAM=VALUE", action="append", default=[], help="a parameter of the platform file; may be repeated")
+    parser.add_argument("--params", metavar="FILE.toml", help='parameters laid over the platform file; <params op="save"/> writes it')
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes may be used; may be repeated")
 
 
@@ -93,7 +98,8 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
     world = _world(DEFAULT_WORLD if request.world is None else request.world, faults, beside)
     a_priori = None if request.map is None else _world(request.map, faults, beside)
     platform = _platform_name(request.platform, world, beside)
-    robot = _robot(request.platform, world, request.set, faults, beside)
+    params = None if request.params is None else Path(request.params)
+    robot = _robot(request.platform, world, request.set, faults, beside, params)
     start, seed = read_start(request.start, faults), read_seed(request.seed, faults)
     if world is not None:
         if start is None and request.start is None:
@@ -106,8 +112,10 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
     seed = world.seed if seed is None else seed
-    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order(), platform, tuple(request.set),
-                  tuple(request.plugin))  # fmt: skip
+    laid_over = sorted(overlay_names(params)) if params is not None else []
+    settings = (*(f"{name}={shown(value_of(robot, name))}" for name in laid_over), *request.set)  # so that a black box knows them
+    return Inputs(mission_path, world, a_priori, robot, start, seed, ports, request.tree, faults.in_order(), platform, settings,
+                  tuple(request.plugin), params)  # fmt: skip
 
 
 def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
@@ -129,12 +137,15 @@ def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
     return read_world(path, name if path == Path(name) else str(path), faults)
 
 
-def _robot(asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None) -> RobotFile | None:
+def _robot(
+    asked: str | None, world: World | None, settings: Sequence[str], faults: Faults, beside: Path | None, params: Path | None = None
+) -> RobotFile | None:
     """The robot asked for, else the world's, else the default; a path in a world file is taken from its folder, too."""
     named = world.robot.platform if world is not None and asked is None else ""
     name = _platform_name(asked, world, beside)
     try:
-        return load_robot_file(name, settings, in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""'))
+        named_at = in_file(world.robot.place, world) if named and world is not None else Place(name or 'platform ""')
+        return load_robot_file(name, settings, named_at, params)
     except InputError as error:
         faults.extend(error.faults)
         return None

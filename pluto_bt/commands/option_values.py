@@ -11,6 +11,7 @@ from pluto_bt.source import Faults, InputError, Place
 from pluto_bt.source.faults import fail
 
 if TYPE_CHECKING:
+    from pluto_bt.gateway.access import Access
     from pluto_bt.gateway.listen import Address
 
 Pose = tuple[float, float, float]
@@ -69,14 +70,14 @@ def read_ports(settings: Sequence[str], faults: Faults) -> dict[str, str]:
     return ports
 
 
-def check_gateway(address: str | None, faults: Faults) -> None:
+def check_gateway(address: str | None, access: Access, faults: Faults) -> None:
     """An asked address that does not exist, is in use or not the loopback is refused before anything is loaded."""
     if address is None:
         return
     from pluto_bt.gateway.listen import open_listener, parse_address
 
     try:
-        open_listener(parse_address(address)).close()
+        open_listener(parse_address(address), access).close()
     except InputError as error:
         faults.extend(error.faults)
 
@@ -88,7 +89,7 @@ def web_address(text: str) -> Address:
     return parse_address(text, "--web", WEB_PORT)
 
 
-def check_web(text: str | None, faults: Faults) -> None:
+def check_web(text: str | None, faults: Faults, access: Access | None = None) -> None:
     """The address of the web console, whether it can be had, and whether its library is there."""
     if text is None:
         return
@@ -98,7 +99,7 @@ def check_web(text: str | None, faults: Faults) -> None:
     from pluto_bt.gateway.listen import open_listener
 
     try:
-        open_listener(web_address(text), "--web").close()
+        open_listener(web_address(text), access, "--web").close()
     except InputError as error:
         faults.extend(error.faults)
 

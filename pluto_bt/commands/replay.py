@@ -75,7 +75,7 @@ def show_in_browser(box: Box, name: str, address: str) -> int:
 
     moments = Moments(box)
     site = RecordedSite(moments.scenery(name), moments.at)
-    listener = open_listener(web_address(address), "--web")
+    listener = open_listener(web_address(address), option="--web")
     print(f"{name} is shown at http://{Address(*listener.getsockname()[:2])}/ (Ctrl-C ends)", flush=True)
     with suppress(KeyboardInterrupt):
         site.serve(listener)

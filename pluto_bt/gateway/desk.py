@@ -9,6 +9,8 @@ from collections import deque
 from collections.abc import Callable, Sequence
 
 from pluto_bt.gateway import inquiries, replies, requests
+from pluto_bt.gateway.access import is_control
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.leases import Held, Leases
 from pluto_bt.gateway.outcomes import Outcomes
 from pluto_bt.gateway.port import RefusedError, RobotPort
@@ -23,10 +25,11 @@ _MOVES = {"start", "resume"}
 class Desk:
     """Answers requests, one at a time, and watches what they began."""
 
-    def __init__(self, port: RobotPort, send: Callable[[Answer], None]) -> None:
+    def __init__(self, port: RobotPort, send: Callable[[Answer], None], audit: Audit) -> None:
         """`send` must be thread-safe and never block."""
         self._port = port
         self._send = send
+        self._audit = audit
         self._leases = Leases()
         self._outcomes = Outcomes()
         self._runs = Runs(port, self._tell)
@@ -52,6 +55,7 @@ class Desk:
             reply = Error(id=request.id, code="internal", text=f"the robot's stop raised {type(error).__name__}: {error}")
         self._stopped.append(source_of(ask))
         self._send(Answer(ask.client, "stop", reply))
+        self._audit.note(ask, reply, self._port.now_s())
         return True
 
     # the stepping thread -----------------------------------------------------------------------------------------
@@ -67,10 +71,12 @@ class Desk:
         try:
             reply, later = self._answer(ask, key, stops, now_s)
         except RefusedError as refusal:
-            reply, later = Error(code=refusal.code, text=refusal.text), []
+            reply, later = _error(refusal), [with_id(_error(more), ask.request.id) for more in refusal.more]
         except Exception as error:  # a fault of the robot's side must not take the link down
             reply, later = Error(code="internal", text=f"{type(error).__name__}: {error}"), []
         self._send(Answer(ask.client, "direct", with_id(reply, ask.request.id)))
+        if is_control(ask.request):
+            self._audit.note(ask, reply, now_s)
         for follow in later:
             self._tell(key, follow)
 
@@ -129,6 +135,10 @@ class Desk:
                 return replies.Modules(state=port.modules())
             case requests.ModuleOp():
                 port.module(request.name, request.op, source_of(ask))
+            case requests.Params():
+                return port.params(request, source_of(ask))
+            case requests.SetTopic():
+                port.set_topic(request.topic, request.fields, source_of(ask))
             case requests.Release():
                 self._require_lease(key, now_s)
                 port.release_estop(source_of(ask))
@@ -231,11 +241,13 @@ class Desk:
                 raise RefusedError("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
         if request.op == "list":
             return replies.Mission(state=port.mission_state(), names=tuple(port.mission_names()))
+        if request.op == "fetch":
+            return replies.Mission(state=port.mission_state(), text=port.mission_text(request.name))
         if request.op != "state":
             port.mission(request.op, request.name, request.text, source_of(ask))
         if request.op in _MOVES:
             self._stop_again(stops, ask)
-        return replies.Mission(state=port.mission_state()) if request.op in ("state", "fetch") else Ok()
+        return replies.Mission(state=port.mission_state()) if request.op == "state" else Ok()
 
     # who is who --------------------------------------------------------------------------------------------------
     def _meet(self, ask: Ask) -> str:
@@ -252,3 +264,7 @@ class Desk:
         client = self._client_of.get(key)
         if client is not None:
             self._send(Answer(client, "later", reply))
+
+
+def _error(refusal: RefusedError) -> Error:
+    return Error(code=refusal.code, text=refusal.text, line=refusal.line, column=refusal.column)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.desk import Desk
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
@@ -21,11 +23,12 @@ _EVENTS = "events"
 class Exchange:
     """Joins the desk to a carrier. `receive` is thread-safe and does stops at once; `step` does everything else."""
 
-    def __init__(self, port: RobotPort, send: Callable[[Down], None]) -> None:
+    def __init__(self, port: RobotPort, send: Callable[[Down], None], audit: Audit | None = None) -> None:
         """`send` must be thread-safe and never block."""
         self._port = port
         self._send = send
-        self._desk = Desk(port, send)
+        self._audit = audit or Audit(None)
+        self._desk = Desk(port, send, self._audit)
         self._inbox: deque[tuple[Up, int]] = deque()  # the one thing that both threads touch
         self._queue: deque[tuple[Up, int]] = deque()
         self._watched: tuple[str, ...] = ()
@@ -33,7 +36,7 @@ class Exchange:
         self._event_seq = 0
         self._batch_s = float("-inf")
 
-    def welcome(self, token: str, limits: Limits, first_client: int, scenery: Scenery | None = None) -> Welcome:
+    def welcome(self, access: Access, limits: Limits, first_client: int, scenery: Scenery | None = None) -> Welcome:
         """The first frame for a gateway; what it is sent begins anew."""
         self._queue.clear()
         self._inbox.clear()
@@ -41,7 +44,9 @@ class Exchange:
         self._sent_seq.clear()
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
-        return Welcome(self._port.name, self._port.now_s(), tuple(self._port.topics()), token, limits, first_client, scenery)
+        port = self._port
+        known = (port.name, port.now_s(), tuple(port.topics()), access, limits, first_client, tuple(port.catalogue()))
+        return Welcome(*known, scenery)
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""
@@ -56,6 +61,7 @@ class Exchange:
 
     def step(self, now_s: float, has_room: Callable[[], bool] = lambda: True) -> None:
         """Send what changed, answer some of what came, both as long as the carrier has room; then look after leases and runs."""
+        self._port.step(now_s)
         if has_room():
             self._publish(now_s)
         self._take_in()
@@ -70,6 +76,7 @@ class Exchange:
             elif isinstance(frame, Watch):
                 self._watch(frame.topics)
         self._desk.step(now_s)
+        self._audit.step()
 
     def _take_in(self) -> None:
         """Line up what the carrier's thread brought, without the inquiries of clients who are gone: nobody hears the answers."""
@@ -88,6 +95,7 @@ class Exchange:
         self._inbox.clear()
         self._watched = ()
         self._desk.gateway_lost()
+        self._audit.step()
 
     def _watch(self, topics: tuple[str, ...]) -> None:
         self._watched = topics

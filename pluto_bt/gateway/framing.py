@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 from lxml import etree
 
 from pluto_bt.gateway.complaint import complaint
 from pluto_bt.gateway.limits import Limits
+from pluto_bt.gateway.plain import PLAIN_ATTRIBUTES, PLAIN_DEPTH, Child, take
 
 _SPACE = re.compile(rb"[ \t\r\n]*")
 _NAME_START = re.compile(rb"[A-Za-z_:\x80-\xff]")
@@ -36,11 +37,16 @@ class FramingError(Exception):
         self.column = column
 
 
-@dataclass(frozen=True, slots=True)
-class Message:
-    """One complete top-level element, where it began in the stream, and its bytes as they came."""
+class Message(msgspec.Struct, frozen=True, gc=False):
+    """One complete top-level element: what is in it, where it began in the stream, and its bytes as they came.
 
-    element: Any
+    `text` is what stands beside the children; of a `mission` neither that nor the children are told: its document is in `raw`.
+    """
+
+    tag: str
+    attrib: dict[str, str]
+    children: tuple[Child, ...]
+    text: str
     line: int
     column: int
     raw: bytes
@@ -58,11 +64,25 @@ class Framer:
         self._parser: Any = None
         self._depth = 0
         self._in_mission = False
+        self._end: re.Pattern[bytes] | None = None  # of the message's end tag, once its start tag is complete
+        self._takes_plain = limits.attributes >= PLAIN_ATTRIBUTES and limits.depth >= PLAIN_DEPTH
 
     def feed(self, data: bytes) -> Iterator[Message]:
         """The messages that `data` completes, as they complete. Raises: FramingError."""
         at = 0
+        text = data.decode() if self._takes_plain and data.isascii() else ""
         while at < len(data):
+            plain = take(text, at) if text and self._parser is None and not self._raw else None
+            if plain is not None and self._count + plain[4] - at <= self._limits.message_bytes:
+                tag, attrib, children, start, end = plain
+                if start - at == 1 and text[at] == "\n":
+                    self._line, self._column = self._line + 1, 1
+                elif start > at:
+                    self._advance(data[at:start])
+                yield Message(tag, attrib, children, "", self._line, self._column, data[start:end])
+                self._column += end - start
+                self._count, self._begun, at = 0, True, end
+                continue
             if self._parser is None:
                 at = self._between(data, at)
                 continue
@@ -158,13 +178,26 @@ class Framer:
         self._parse(bytes(self._raw))
 
     def _inside(self, data: bytes, at: int) -> tuple[int, Any]:
-        """Feed the parser up to the next `>`; the position after it, and the element if it is complete."""
+        """Feed the parser up to where the message may end; the position after it, and the element if it is complete."""
         self._require_room(1)
-        end = data.find(b">", at) + 1 or len(data)
+        end = self._next_cut(data, at)
         piece = data[at : min(end, at + self._room())]
         self._raw += piece
         self._count += len(piece)
         return at + len(piece), self._parse(piece)
+
+    def _next_cut(self, data: bytes, at: int) -> int:
+        """Behind the next `>`, if that may be of the last tag; else behind all that surely stands before it."""
+        if self._end is not None and b">" in self._raw[self._raw.rfind(b"<") :]:  # no tag is open, so that an end tag is whole or not here
+            found = self._end.search(data, at)
+            if found is not None:
+                return found.end()
+            last = data.rfind(b"<", at)
+            if last < 0 or data.find(b">", last) >= 0:
+                return len(data)
+            if last > at:
+                return last
+        return data.find(b">", at) + 1 or len(data)
 
     def _parse(self, piece: bytes) -> Any:
         """The message's element if this piece completes it."""
@@ -186,10 +219,13 @@ class Framer:
             raise self._error("restricted-xml", "expected elements and text, found a processing instruction", element.sourceline)
         if event == "end":
             self._depth -= 1
+            if self._in_mission and self._depth > 0:  # its document is wanted as text: no tree of it piles up
+                element.getparent().remove(element)
             return element if self._depth == 0 else None
         self._depth += 1
         if self._depth == 1:
             self._in_mission = element.tag == "mission"
+            self._end = re.compile(rb"</" + re.escape(self._raw_name()) + rb"\s*>")
         limit = self._limits.mission_depth + 1 if self._in_mission else self._limits.depth
         if self._depth > limit:
             raise self._error("too-deep", f"expected at most {limit} elements inside each other", element.sourceline)
@@ -204,10 +240,16 @@ class Framer:
         line, column = error.position
         return self._error(code, text, line, column)
 
+    def _raw_name(self) -> bytes:
+        """The message's tag as it was written, prefix and all."""
+        return bytes(re.split(rb"[\s/>]", self._raw[1:], maxsplit=1)[0])
+
     def _complete(self, element: Any) -> Message:
-        raw = bytes(self._raw)
-        message = Message(element, self._line, self._column, raw)
-        self._parser = None
+        raw, in_mission = bytes(self._raw), self._in_mission
+        inside = () if in_mission else tuple(_child(one) for one in element if isinstance(one.tag, str))
+        text = "" if in_mission else _text(element)
+        message = Message(element.tag, dict(element.attrib), inside, text, self._line, self._column, raw)
+        self._parser = self._end = None
         self._forget(raw)
         return message
 
@@ -240,3 +282,12 @@ class Framer:
         """An error at the parser's line and column (which begin behind the private root's line), else at the message's begin."""
         line = max(0, line - 2)
         return FramingError(code, text, self._line + line, (column if line else self._column + max(0, column - 1)))
+
+
+def _text(element: Any) -> str:
+    """The text directly inside an element, not in its children; comments are left out."""
+    return (element.text or "") + "".join(child.tail or "" for child in element)
+
+
+def _child(element: Any) -> Child:
+    return Child(element.tag, dict(element.attrib), _text(element), not any(isinstance(one.tag, str) for one in element))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from pluto_bt.gateway.channels import Channels
 from pluto_bt.gateway.describe import describe
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.newest import Newest
@@ -11,9 +12,12 @@ from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.replies import Description
 from pluto_bt.gateway.requests import AnyRequest, Describe
 from pluto_bt.gateway.session import Session
-from pluto_bt.gateway.subscriptions import matches
+from pluto_bt.gateway.subscriptions import ALIASES, Flow, matches
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Gone, Up, Watch, Welcome
 from pluto_bt.source import did_you_mean
+
+INTEREST_S = 5.0
+"""A topic that somebody `get`s is watched for so long, so that the next `get` is answered here."""
 
 
 class Hub:
@@ -28,19 +32,24 @@ class Hub:
     def __init__(self, welcome: Welcome, send: Callable[[Up], None], now_s: float) -> None:
         self.limits: Limits = welcome.limits
         self.robot = welcome.robot
-        self.token = welcome.token
-        self._topics = welcome.topics
+        self.access = welcome.access
+        self.topics = welcome.topics
+        self.batch_s = float("-inf")  # when the executive last told what has changed
+        self._catalogue = welcome.catalogue
         self._send = send
         self._sessions: dict[int, Session] = {}
+        self._evicted: list[int] = []  # who is still to be told
         self._asked: set[int] = set()  # clients that the executive has heard of
         self._next_client = welcome.first_client
-        self._newest: dict[str, Newest] = {}
+        self._channels = Channels(welcome.topics)
+        self._interest: dict[str, float] = {}  # topics that were asked for by `get`, and until when they are watched for it
         self._watched: tuple[str, ...] = ()
         self._run_minus_ours_s = welcome.now_s - now_s
 
     # clients -----------------------------------------------------------------------------------------------------
     def open(self, now_s: float) -> Session:
         """A session for a new connection; if there is no place it is already closing, with the error to send."""
+        self._make_room()
         taken = sum(not session.closing for session in self._sessions.values())
         is_reserve = taken >= self.limits.clients - self.limits.operator_places
         session = Session(self._next_client, self, now_s, is_reserve=is_reserve)
@@ -50,6 +59,15 @@ class Hub:
             session.fail("too-many-connections", f"{taken} clients are connected, and no more are taken")
         return session
 
+    def _make_room(self) -> None:
+        """If all places are taken, the operators' too: who sits there and has not shown that he is one gives way, the oldest first."""
+        places = [session for session in self._sessions.values() if not session.closing]
+        if len(places) >= self.limits.clients:
+            strangers = [session for session in places if session.is_stranger]
+            for session in strangers[:1]:
+                session.fail("too-many-connections", "this place is for operators: <stop/>, or hello with such a name, was expected at once")
+                self._evicted.append(session.client)
+
     def close(self, session: Session) -> None:
         """The connection is gone."""
         if self._sessions.pop(session.client, None) is None:
@@ -57,6 +75,7 @@ class Hub:
         if session.client in self._asked:
             self._asked.discard(session.client)
             self._send(Gone(session.client))
+        session.subscriptions.end()
         self.watch()
 
     def shut(self) -> None:
@@ -74,42 +93,76 @@ class Hub:
             session.answer(frame, now_s)
             return (frame.client,)
         self._run_minus_ours_s = frame.now_s - now_s
-        values = [Newest(value.topic, value.seq, frame.now_s - value.written_s, now_s, value.payload) for value in frame.values]
-        events = [Newest("events", seq, frame.now_s - event.stamp_s, now_s, event) for seq, event in frame.events]
-        self._newest |= {newest.topic: newest for newest in values if newest.topic in self._watched}
-        for session in self._sessions.values():
-            session.subscriptions.offer(values, now_s)
-            session.events(events, now_s)
-        return tuple(self._sessions)
+        self.batch_s = now_s
+        touched: dict[int, None] = {}
+        for value in frame.values:
+            newest = Newest(value.topic, value.seq, frame.now_s - value.written_s, now_s, value.payload)
+            self._hand_out(self._channels.offer(newest, now_s), touched)
+        if frame.events:
+            events = [Newest("events", seq, frame.now_s - event.stamp_s, now_s, event) for seq, event in frame.events]
+            touched |= {session.client: None for session in self._sessions.values() if session.events(events, now_s)}
+        return touched
+
+    def tick(self, now_s: float) -> Iterable[int]:
+        """Look after manners and rates, some times a second; the clients who have something to be sent."""
+        touched: dict[int, None] = dict.fromkeys(self._evicted)
+        self._evicted.clear()
+        self._hand_out(self._channels.late(now_s), touched)
+        if any(until_s <= now_s for until_s in self._interest.values()):
+            self._interest = {topic: until_s for topic, until_s in self._interest.items() if until_s > now_s}
+            self.watch()
+        return touched
 
     def run_s(self, now_s: float) -> float:
         """The run's clock, as well as it is known here."""
         return now_s + self._run_minus_ours_s
 
+    def _hand_out(self, flows: Iterable[Flow], touched: dict[int, None]) -> None:
+        sessions = self._sessions
+        for flow in flows:
+            sessions[flow.client].subscriptions.due[flow] = None
+            touched[flow.client] = None
+
     # for sessions ------------------------------------------------------------------------------------------------
-    def ask(self, client: int, session: str, name: str, request: AnyRequest) -> None:
+    def ask(self, session: Session, request: AnyRequest) -> None:
         """Hand a request to the executive."""
-        self._asked.add(client)
-        self._send(Ask(client, session, name, request))
+        self._asked.add(session.client)
+        self._send(Ask(session.client, session.session, session.name, request, session.peer))
 
     def describe(self, request: Describe) -> Description:
         """What exists. Raises: RefusedError."""
-        return describe(request, self._topics)
+        return describe(request, self.topics, self._catalogue)
+
+    def get(self, topic: str, now_s: float) -> Newest | None:
+        """The newest value of a topic if it is known here; if not, it will be."""
+        name = ALIASES.get(topic, topic)
+        if name not in self.topics or name == "events":
+            return None
+        is_new = name not in self._interest
+        self._interest[name] = now_s + INTEREST_S
+        if is_new and name not in self._watched:
+            self.watch()
+            return None
+        return self._channels.newest(name)
 
     def require_topic(self, pattern: str) -> None:
         """Raises: RefusedError `unknown-topic` if the pattern means no topic of this run."""
-        if not any(matches(pattern, topic) for topic in self._topics):
-            raise RefusedError("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self._topics) or "<describe/> lists all"}')
+        if not any(matches(pattern, topic) for topic in self.topics):
+            raise RefusedError("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self.topics) or "<describe/> lists all"}')
 
-    def subscribed(self, session: Session, now_s: float) -> None:
-        """Watch what the session wants now, and give it what is already here."""
+    def joined(self, session: Session, old: set[Flow], now_s: float) -> None:
+        """Watch what the session wants now, and give it what is already here; `old` = the flows it had before."""
         self.watch()
-        session.subscriptions.offer(self._newest.values(), now_s)
+        subscriptions = session.subscriptions
+        for topic, flow in subscriptions.flows.items():
+            if flow not in old and self._channels.join(topic, flow, now_s):
+                subscriptions.due[flow] = None
 
     def watch(self) -> None:
         """Tell the executive which topics are wanted, if that has changed."""
-        wanted = tuple(topic for topic in self._topics if any(session.subscriptions.flow(topic) for session in self._sessions.values()))
+        wished = {topic for session in self._sessions.values() for topic in session.subscriptions.flows}
+        wanted = tuple(topic for topic in self.topics if topic in wished or topic in self._interest)
         if wanted != self._watched:
+            self._channels.forget(topic for topic in self._watched if topic not in wanted)
             self._watched = wanted
-            self._newest = {topic: newest for topic, newest in self._newest.items() if topic in wanted}
             self._send(Watch(wanted))

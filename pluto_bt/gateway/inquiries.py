@@ -11,6 +11,8 @@ from pluto_bt.gateway.wire import pack_value
 from pluto_bt.source import did_you_mean
 
 _LEVELS = ("info", "warning", "error")
+CLEARS = {"estop-released": ("estop", False), "module-restarted": ("module-error", True), "gateway-restarted": ("gateway-lost", True)}
+"""The code of an event -> (the code of those that it clears, whether only those of the same source)."""
 
 
 def newest(port: RobotPort, topic: str) -> Value:
@@ -37,6 +39,14 @@ def tree(port: RobotPort, format: str) -> Tree:
 
 
 def log(port: RobotPort, request: Log) -> list[AnyReply]:
-    """The events that `log` asks for."""
+    """The events that `log` asks for, each with whether a later one has said that it is over."""
     hidden = _LEVELS[: _LEVELS.index(request.level)]
-    return [LogLine(id=request.id, seq=seq, event=event) for seq, event in port.events_after(request.since) if event.level not in hidden]
+    lines: list[AnyReply] = []
+    over: set[tuple[str, str]] = set()  # (code, source; "" = whoever)
+    for seq, event in reversed(port.events_after(request.since)):
+        is_cleared = not over.isdisjoint({(event.code, event.source), (event.code, "")})
+        if event.code in CLEARS:
+            over.add((CLEARS[event.code][0], event.source if CLEARS[event.code][1] else ""))
+        if event.level not in hidden:
+            lines.append(LogLine(id=request.id, seq=seq, event=event, is_cleared=is_cleared))
+    return lines[::-1]

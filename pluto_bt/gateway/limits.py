@@ -36,3 +36,5 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True):
     """Unsent bytes in our buffers above which values wait (and old ones are dropped)."""
     linger_s: float = 1.0
     """After a fatal error input is thrown away for this long, so that the error arrives."""
+    discard_bytes: int = 16 * 1024 * 1024
+    """But no more than this; then nothing is read any more."""

@@ -8,6 +8,8 @@ import subprocess
 import sys
 from typing import NamedTuple
 
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.courier import Courier
 from pluto_bt.gateway.exchange import Exchange
 from pluto_bt.gateway.limits import Limits
@@ -37,13 +39,19 @@ class GatewayLink:
     """
 
     def __init__(
-        self, port: RobotPort, address: Address | None, token: str = "", limits: Limits | None = None, console: Console | None = None
+        self,
+        port: RobotPort,
+        address: Address | None,
+        access: Access | None = None,
+        limits: Limits | None = None,
+        audit: Audit | None = None,
+        console: Console | None = None,
     ) -> None:
         self._address = address
         self._console = console
-        self._token = token
+        self._access = access or Access()
         self._limits = limits or Limits()
-        self._exchange = Exchange(port, self._send)
+        self._exchange = Exchange(port, self._send, audit)
         self._listener: socket.socket | None = None
         self._web: socket.socket | None = None
         self._courier: Courier | None = None
@@ -64,6 +72,11 @@ class GatewayLink:
         return _bound(self._web)
 
     @property
+    def is_lost(self) -> bool:
+        """True while there is no process."""
+        return self._process is None
+
+    @property
     def pid(self) -> int | None:
         """The gateway process."""
         return self._process.pid if self._process else None
@@ -71,9 +84,9 @@ class GatewayLink:
     def listen(self) -> None:
         """Take the ports; harmless if they are ours already. Raises: InputError (for an asked port exit 2, for the default one a warning)."""
         if self._listener is None and self._address is not None:
-            self._listener = open_listener(self._address)
+            self._listener = open_listener(self._address, self._access)
         if self._web is None and self._console is not None:
-            self._web = open_listener(self._console.address, "--web")
+            self._web = open_listener(self._console.address, self._access, "--web")
 
     def start(self, now_s: float) -> None:
         """Listen and spawn the process. Raises: InputError if `listen` was not called before and the port cannot be had."""
@@ -127,7 +140,7 @@ class GatewayLink:
         self._begun_s = now_s
         self._died_s = None
         scenery = None if self._console is None else self._console.scenery
-        welcome = self._exchange.welcome(self._token, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS, scenery)
+        welcome = self._exchange.welcome(self._access, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS, scenery)
         self._courier = Courier(ours, self._exchange.receive)
         self._courier.send(welcome)
 

@@ -6,11 +6,12 @@ import ipaddress
 import socket
 from typing import NamedTuple
 
+from pluto_bt.gateway.access import Access
 from pluto_bt.source.faults import Place, fail
 
 DEFAULT_PORT = 7500
 WEB_PORT = 7580
-BACKLOG = 128
+BACKLOG = 1024
 WHAT = {"--gateway": "the gateway", "--web": "the web console"}
 
 
@@ -35,16 +36,19 @@ def parse_address(text: str, option: str = "--gateway", default_port: int = DEFA
     return Address(host.strip("[]") or "127.0.0.1", int(port))
 
 
-def open_listener(address: Address, option: str = "--gateway") -> socket.socket:
-    """A listening socket. Raises: InputError, told at `option`, if the address is not the loopback, does not exist, or is in use."""
+def open_listener(address: Address, access: Access | None = None, option: str = "--gateway") -> socket.socket:
+    """A listening socket. Raises: InputError, told at `option`, if the address does not exist or is in use, or is not the loopback and
+    `access` lets anybody in."""
     place, what = Place(file=option), WHAT[option]
     try:
         family, _, _, _, target = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_STREAM)[0]
     except OSError as error:
         fail(place, "bad-address", f'unknown host "{address.host}"', found=str(error), mend="give 127.0.0.1, or an address of this machine")
-    if not ipaddress.ip_address(str(target[0]).split("%")[0]).is_loopback:
-        mend = f"listen on 127.0.0.1:{address.port} and reach it through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
-        fail(place, "not-loopback", f"{what} does not listen on {address} without TLS and a token", expected="a loopback address", mend=mend)
+    is_safe = access is not None and bool(access.keys and access.certificate)
+    if not is_safe and not ipaddress.ip_address(str(target[0]).split("%")[0]).is_loopback:
+        expected = "a loopback address, or --gateway-tls CERT.pem,KEY.pem and --gateway-tokens FILE.toml"
+        mend = f"give both, or listen on 127.0.0.1:{address.port} and come through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
+        fail(place, "not-loopback", f"{what} does not listen on {address} without TLS and tokens", expected=expected, mend=mend)
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.exchange import Exchange
 from pluto_bt.gateway.hub import Hub
 from pluto_bt.gateway.limits import Limits
@@ -35,11 +37,12 @@ class LocalClient:
 class LocalGateway:
     """A Component whose clients live in the same thread."""
 
-    def __init__(self, port: RobotPort, limits: Limits | None = None, token: str = "") -> None:
+    def __init__(self, port: RobotPort, limits: Limits | None = None, access: Access | None = None, audit: Audit | None = None) -> None:
         self._down: deque[Down] = deque()
-        self._exchange = Exchange(port, self._down.append)
+        self._exchange = Exchange(port, self._down.append, audit)
         self.now_s = port.now_s()
-        self.hub = Hub(self._exchange.welcome(token, limits or Limits(), 1), self._exchange.receive, self.now_s)
+        welcome = self._exchange.welcome(access or Access(), limits or Limits(), 1)
+        self.hub = Hub(welcome, self._exchange.receive, self.now_s)
 
     def start(self, now_s: float) -> None:
         """Nothing to take."""
@@ -52,6 +55,7 @@ class LocalGateway:
             frame = self._down.popleft()
             if isinstance(frame, Answer | Batch):
                 self.hub.receive(frame, now_s)
+        self.hub.tick(now_s)
 
     def stop(self) -> None:
         """Tell the clients."""

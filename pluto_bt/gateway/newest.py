@@ -13,13 +13,13 @@ class Newest:
     `age_s` is the age when the executive sent it, `received_s` our clock at that moment; the difference to now is added.
     """
 
-    __slots__ = ("_age_s", "_body", "_line", "_payload", "_received_s", "_stamp_s", "seq", "topic")
+    __slots__ = ("_age_s", "_body", "_line", "_payload", "_stamp_s", "received_s", "seq", "topic")
 
     def __init__(self, topic: str, seq: int, age_s: float, received_s: float, payload: bytes | Message) -> None:
         self.topic = topic
         self.seq = seq
         self._age_s = age_s
-        self._received_s = received_s
+        self.received_s = received_s
         self._payload = payload
         self._body: str | None = None
         self._stamp_s = 0.0
@@ -40,7 +40,7 @@ class Newest:
         if plain and self._line:
             return self._line
         body = self.body()
-        age_s = self._age_s + now_s - self._received_s
+        age_s = self._age_s + now_s - self.received_s
         line = value_line(shown or self.topic, self.seq, self._stamp_s, age_s, body, id=id, dropped=dropped)
         if plain:
             self._line = line

@@ -4,29 +4,36 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
 
 from pluto_bt.gateway.framing import Message
+from pluto_bt.gateway.plain import Child
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.requests import ELEMENTS, AnyRequest, Run, Vector
 from pluto_bt.source import did_you_mean
 
-_FROM_CONTENT = {"command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text",)}
+_FROM_CONTENT = {
+    "command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text",), "params": ("values",), "set": ("fields",),
+}  # fmt: skip
+_ATTRIBUTES = {
+    tag: tuple(name for name in kind.__struct_fields__ if name not in _FROM_CONTENT.get(tag, ())) for tag, kind in ELEMENTS.items()
+}
 _COUNTS = {"position": 2, "velocity": 2, "acceleration": 2}
 _INLINE = re.compile(rb"<mission\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>(.*)</mission\s*>", re.DOTALL)
 
 
 def parse(message: Message) -> AnyRequest:
     """The request that a message makes. Raises: RefusedError (`unknown-element`, `invalid`, `bad-value`)."""
-    tag = message.element.tag
+    tag = message.tag
     kind = ELEMENTS.get(tag)
     if kind is None:
         hint = did_you_mean(tag, ELEMENTS)
         raise RefusedError("unknown-element", f"unknown element <{tag}>; expected one of: {', '.join(sorted(ELEMENTS))}{'; ' + hint if hint else ''}")
-    given: dict[str, Any] = dict(message.element.attrib)
-    known = [name for name in kind.__struct_fields__ if name not in _FROM_CONTENT.get(tag, ())]
+    given: dict[str, Any] = dict(message.attrib)
+    known = _ATTRIBUTES[tag]
     if kind is Run:
         given = {name: given[name] for name in known if name in given} | {"ports": {k: v for k, v in given.items() if k not in known}}
     else:
@@ -42,7 +49,7 @@ def parse(message: Message) -> AnyRequest:
         raise RefusedError("invalid", _explain(tag, given, known, str(error))) from None
 
 
-def _explain(tag: str, given: dict[str, Any], known: list[str], complaint: str) -> str:
+def _explain(tag: str, given: dict[str, Any], known: Sequence[str], complaint: str) -> str:
     """msgspec's complaint as: which attribute, what was expected, what was found."""
     missing = re.match(r"Object missing required field `(\w+)`", complaint)
     if missing:
@@ -59,15 +66,15 @@ def _explain(tag: str, given: dict[str, Any], known: list[str], complaint: str) 
 
 def _content(message: Message) -> dict[str, Any]:
     """What stands inside the element: vectors of a command, the document of a mission, else nothing but white space."""
-    tag = message.element.tag
+    tag, children = message.tag, message.children
     if tag == "mission":
         inline = _INLINE.search(message.raw)
         text = inline[1].decode() if inline else ""
         return {"text": text} if text.strip() else {}
-    children = [child for child in message.element if isinstance(child.tag, str)]
-    stray = "".join(message.element.itertext()) if not children else (message.element.text or "") + "".join(child.tail or "" for child in children)
-    if stray.strip():
-        raise RefusedError("invalid", f"<{tag}>: expected no text, found {stray.strip()[:40]!r}")
+    if message.text.strip():
+        raise RefusedError("invalid", f"<{tag}>: expected no text, found {message.text.strip()[:40]!r}")
+    if tag in ("params", "set"):
+        return _texts(tag, children)
     allowed = _FROM_CONTENT["command"] if tag == "command" else ()
     found: dict[str, Any] = {}
     for child in children:
@@ -78,9 +85,22 @@ def _content(message: Message) -> dict[str, Any]:
     return found
 
 
-def _vector(tag: str, child: Any) -> Vector:
+def _texts(tag: str, children: Sequence[Child]) -> dict[str, Any]:
+    """The texts of `<p name="…">` by name, or of the fields of a topic by tag; each once, and nothing inside them."""
+    found: dict[str, str] = {}
+    for child in children:
+        name = child.attrib.get("name", "") if tag == "params" else child.tag
+        if tag == "params" and (child.tag != "p" or list(child.attrib) != ["name"]):
+            raise RefusedError("invalid", f'<{tag}>: expected <p name="…">, found <{" ".join([child.tag, *child.attrib])}>')
+        if name in found or not child.is_leaf or (tag == "set" and child.attrib):
+            raise RefusedError("invalid", f'<{tag}>: expected each of its elements once, with a text alone; look at "{name}"')
+        found[name] = child.text
+    return {"values" if tag == "params" else "fields": found}
+
+
+def _vector(tag: str, child: Child) -> Vector:
     """The numbers of one child, finite and as many as the field has."""
-    words = "".join(child.itertext()).split()
+    words = child.text.split()
     where = f"<{tag}>: <{child.tag}>"
     try:
         values = tuple(float(word) for word in words)

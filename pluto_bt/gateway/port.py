@@ -8,19 +8,26 @@ from typing import Literal, NamedTuple, Protocol
 import msgspec
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, Message, MissionState, ModulesState
-from pluto_bt.gateway.replies import Cause
+from pluto_bt.gateway.replies import Cause, Item, ParamsState
+from pluto_bt.gateway.requests import Params
 from pluto_bt.source import PlutoError
 
 OnLoss = Literal["stop", "pause", "continue"]
 
 
 class RefusedError(PlutoError):
-    """A request that is understood and not granted. `code` is one of the codes of PROTOCOL.md that are not fatal."""
+    """A request that is understood and not granted. `code` is one of the codes of PROTOCOL.md that are not fatal.
 
-    def __init__(self, code: str, text: str) -> None:
+    `line` and `column` are those of a document that came with the request, 0 without one; `more` holds its further faults.
+    """
+
+    def __init__(self, code: str, text: str, line: int = 0, column: int = 0, more: Sequence[RefusedError] = ()) -> None:
         super().__init__(text)
         self.code = code
         self.text = text
+        self.line = line
+        self.column = column
+        self.more = tuple(more)
 
 
 class Newest(NamedTuple):
@@ -53,6 +60,9 @@ class RobotPort(Protocol):
 
     def now_s(self) -> float:
         """Seconds of the run's clock."""
+
+    def step(self, now_s: float) -> None:
+        """Called each time before requests are answered: what time alone does."""
 
     def topics(self) -> Sequence[str]:
         """Names of the topics that this run has."""
@@ -94,7 +104,10 @@ class RobotPort(Protocol):
         """Missions that can be loaded by name."""
 
     def mission(self, op: str, name: str, text: str, source: str) -> None:
-        """Do `load`, `check`, `start`, `pause`, `resume`, `abort` or `fetch`. Raises: RefusedError."""
+        """Do `load`, `check`, `start`, `pause`, `resume` or `abort`. Raises: RefusedError, with every fault of a document."""
+
+    def mission_text(self, name: str) -> str:
+        """The document of the mission of that name, of the one at work if it is "". Raises: RefusedError."""
 
     def tree_text(self, format: str) -> str:
         """The tree drawn as `ascii` or `dot`; "" if there is none."""
@@ -107,3 +120,12 @@ class RobotPort(Protocol):
 
     def module(self, name: str, op: str, source: str) -> None:
         """Start or stop a module. Raises: RefusedError."""
+
+    def params(self, request: Params, source: str) -> ParamsState:
+        """Get, set, take back or save parameters. Raises: RefusedError with everything that is wrong."""
+
+    def set_topic(self, topic: str, fields: Mapping[str, str], source: str) -> None:
+        """Write a topic that belongs to the gateway. Raises: RefusedError."""
+
+    def catalogue(self) -> Sequence[Item]:
+        """What there is besides topics: items of the kinds `node`, `param` and `module`; the same through the whole run."""

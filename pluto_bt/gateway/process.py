@@ -45,6 +45,7 @@ class ExecutiveProtocol(asyncio.Protocol):
 
     def _open(self, welcome: Welcome) -> None:
         server = self._server = Server(Hub(welcome, self._send, self._loop.time()))
+        server.begin()
         if self._listener is not None:
             self._starting.append(self._loop.create_task(server.listen(self._listener)))
         if self._web is not None and welcome.scenery is not None:

@@ -5,8 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from lxml import etree
-
 from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.replies import Error, encode
@@ -21,13 +19,14 @@ class Connection:
     """The framing, the rate and the end of one connection.
 
     Attributes:
+        queue: what `to_send` will give; only to be looked at.
         closing: a fatal error was said or the client is gone: send what is left, half-close, discard input for `linger_s`.
     """
 
     def __init__(self, limits: Limits | None = None) -> None:
         self._limits = limits or Limits()
         self._framer: Framer | None = Framer(self._limits)
-        self._out = bytearray()
+        self.queue = self._out = bytearray()
         self._tokens = self._limits.messages_per_s
         self._refilled_s: float | None = None
         self._too_fast = False
@@ -45,7 +44,7 @@ class Connection:
             return
         try:
             for message in self._framer.feed(data) if self._framer else ():
-                if message.element.tag in STOPS or (not self.closing and self._may_pass(message, now_s)):
+                if message.tag in STOPS or (not self.closing and self._may_pass(message, now_s)):
                     yield message
                 elif self.closing:
                     self._framer = None
@@ -62,7 +61,7 @@ class Connection:
         seen = self._seen + data
         for found in _A_STOP.finditer(seen):
             tag = found[1].decode("ascii")
-            yield Message(etree.Element(tag), 0, 0, b"<" + found[1] + b"/>")
+            yield Message(tag, {}, (), "", 0, 0, b"<" + found[1] + b"/>")
         last = seen.rfind(b"<")
         self._seen = seen[last:] if last >= len(seen) - _LONGEST_STOP and not _A_STOP.match(seen, last) else b""
 

@@ -98,10 +98,11 @@ class Result(Reply, frozen=True, kw_only=True):
 
 
 class Mission(Reply, frozen=True, kw_only=True):
-    """The mission's state, and for `list` the missions there are."""
+    """The mission's state, for `list` the missions there are, for `fetch` the document."""
 
     state: MissionState
     names: tuple[str, ...] = ()
+    text: str = ""
 
 
 class Tree(Reply, frozen=True, kw_only=True):
@@ -137,18 +138,39 @@ class Why(Reply, frozen=True, kw_only=True):
     causes: tuple[Cause, ...]
 
 
+class Param(msgspec.Struct, frozen=True):
+    """One parameter as it is now. `live`: it can be changed while the robot runs; the others are set when it starts."""
+
+    name: str
+    value: str
+    type: str
+    unit: str
+    range: str
+    default: str
+    live: bool
+
+
+class ParamsState(Reply, frozen=True, kw_only=True):
+    """Parameters; `rev` counts the changes; `confirm_s` = seconds after which an unconfirmed change goes back, 0 = all is confirmed."""
+
+    rev: int
+    confirm_s: float = 0.0
+    rows: tuple[Param, ...] = ()
+
+
 class LogLine(Reply, frozen=True, kw_only=True):
-    """One event for operators."""
+    """One event for operators; `is_cleared`: what it told of is over."""
 
     event: Event
     seq: int
+    is_cleared: bool = False
 
 
 class Item(msgspec.Struct, frozen=True):
-    """One thing that exists: its attributes, its fields (name, type, unit), and what it means."""
+    """One thing that exists: its attributes (`kind` and `name` first), its fields or ports, and what it means."""
 
     attributes: dict[str, str]
-    fields: tuple[tuple[str, str, str], ...]
+    fields: tuple[dict[str, str], ...]
     doc: str
 
 
@@ -168,7 +190,7 @@ class Value(Reply, frozen=True, kw_only=True):
 
 
 AnyReply: TypeAlias = (
-    Hello | Pong | Ok | Error | LeaseState | Ack | Progress | Result | Mission | Tree | Modules | Why | LogLine | Description | Value
+    Hello | Pong | Ok | Error | LeaseState | Ack | Progress | Result | Mission | Tree | Modules | Why | ParamsState | LogLine | Description | Value
 )
 
 
@@ -195,7 +217,8 @@ def _with_id(reply: Reply, tag: str, attributes: dict[str, Attribute], body: str
 def _mission(reply: Mission) -> str:
     state = reply.state
     shown: dict[str, Attribute] = {"name": state.name, "run": state.run, "state": state.state, "reason": state.reason, "step": state.step}
-    return _with_id(reply, "mission_state", shown, "".join(element("mission", {"name": name}) for name in reply.names))
+    body = "".join(element("mission", {"name": name}) for name in reply.names)
+    return _with_id(reply, "mission_state", shown, body + (element("document", {}, escape(reply.text)) if reply.text else ""))
 
 
 def _tree(reply: Tree) -> str:
@@ -215,14 +238,22 @@ def _cause(cause: Cause) -> str:
 def _event(reply: LogLine) -> str:
     event = reply.event
     shown: dict[str, Attribute] = {"level": event.level, "code": event.code, "source": event.source, "seq": reply.seq}
-    shown["time"] = _seconds(event.stamp_s)
+    shown |= {"time": _seconds(event.stamp_s), "cleared": reply.is_cleared}
     return _with_id(reply, "event", shown, escape(event.text))
+
+
+def _params(reply: ParamsState) -> str:
+    rows = []
+    for one in reply.rows:
+        shown: dict[str, Attribute] = {name: getattr(one, name) for name in one.__struct_fields__ if name != "value"}
+        rows.append(element("p", shown, escape(one.value)))
+    return _with_id(reply, "params", {"rev": reply.rev, "confirm_s": f"{reply.confirm_s:.3f}"}, "".join(rows))
 
 
 def _description(reply: Description) -> str:
     items = []
     for item in reply.items:
-        fields = "".join(element("field", {"name": name, "type": kind, "unit": unit}) for name, kind, unit in item.fields)
+        fields = "".join(element("field", dict(field)) for field in item.fields)
         items.append(element("item", dict(item.attributes), fields + element("doc", {}, escape(item.doc))))
     return _with_id(reply, "description", {}, "".join(items))
 
@@ -262,6 +293,8 @@ def _text(reply: AnyReply) -> str:  # one case a message: longer than a screen o
             return _with_id(reply, "modules", {}, "".join(row("module", module) for module in reply.state.modules))
         case Why():
             return _why(reply)
+        case ParamsState():
+            return _params(reply)
         case LogLine():
             return _event(reply)
         case Description():

@@ -144,6 +144,27 @@ class ModuleOp(Request, frozen=True, kw_only=True):
     op: Literal["start", "stop"]
 
 
+class Params(Request, frozen=True, kw_only=True):
+    """Parameters: get them (`name` may end in `*`), set some, all or none, take the last change back, keep what is set for the next run.
+
+    `rev` = the revision that the client saw; `confirm_s` > 0: the change goes back by itself unless a `set` without it (it may be empty) or a
+    `save` follows in that time.
+    """
+
+    op: Literal["get", "set", "rollback", "save"] = "get"
+    name: str = "*"
+    rev: Annotated[int, Meta(ge=0)] | None = None
+    confirm_s: Annotated[float, Meta(ge=0.0, le=3600.0)] = 0.0
+    values: dict[str, str] = {}  # msgspec copies the default for each instance
+
+
+class SetTopic(Request, frozen=True, kw_only=True):
+    """Write a topic whose writer is `gateway`: one child a field, as in `<value>`."""
+
+    topic: str
+    fields: dict[str, str] = {}
+
+
 class Log(Request, frozen=True, kw_only=True):
     """Events after the sequence number `since`, of this level or worse."""
 
@@ -157,13 +178,13 @@ class Bye(Request, frozen=True, kw_only=True):
 
 AnyRequest: TypeAlias = (
     SayHello | Ping | Describe | Get | Subscribe | Unsubscribe | Lease | Command | Run | Cancel | Stop | Estop | Release
-    | MissionOp | ShowTree | Why | ShowModules | ModuleOp | Log | Bye
+    | MissionOp | ShowTree | Why | ShowModules | ModuleOp | Params | SetTopic | Log | Bye
 )  # fmt: skip
 
 ELEMENTS: dict[str, type[Any]] = {
     "hello": SayHello, "ping": Ping, "describe": Describe, "get": Get, "subscribe": Subscribe, "unsubscribe": Unsubscribe, "lease": Lease,
     "command": Command, "run": Run, "cancel": Cancel, "stop": Stop, "estop": Estop, "release": Release, "mission": MissionOp,
-    "tree": ShowTree, "why": Why, "modules": ShowModules, "module": ModuleOp, "log": Log, "bye": Bye,
+    "tree": ShowTree, "why": Why, "modules": ShowModules, "module": ModuleOp, "params": Params, "set": SetTopic, "log": Log, "bye": Bye,
 }  # fmt: skip
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import socket
+import ssl
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
@@ -13,7 +15,9 @@ from pluto_bt.gateway.session import Session
 
 SLICE_BYTES = 4096
 """Bytes of one client that are read before the others have their turn."""
-LOWAT_BYTES = 16 * 1024
+TICK_S, TICKS_A_SWEEP = 0.05, 10
+BACKLOG = 1024
+HANDSHAKE_S = 3.0
 
 
 class ClientProtocol(asyncio.Protocol):
@@ -21,36 +25,51 @@ class ClientProtocol(asyncio.Protocol):
 
     def __init__(self, server: Server) -> None:
         self._server = server
-        self._loop = asyncio.get_running_loop()
+        self._loop = server.loop
         self._transport: asyncio.Transport
         self._session: Session
         self._unread: deque[bytes] = deque()
-        self._is_reading = False
         self._is_full = False
         self._at_eof = False
         self._is_ending = False
-        self._timer: asyncio.Handle | None = None
-        self._timer_due_s = 0.0  # kept here, because uvloop's handles do not tell it
+        self._discarded = 0  # bytes since the end began
+        self._fd = -1
+        self._before: tuple[Sized, Sized] = ((), ())  # what stands before a value that is sent at once
 
     # asyncio's calls ---------------------------------------------------------------------------------------------
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """A client."""
         self._transport = cast(asyncio.Transport, transport)  # uvloop's own is no subclass
-        _keep_buffers_small(self._transport, self._server.hub.limits.write_mark_bytes)
-        self._session = self._server.hub.open(self._loop.time())
-        if len(self._server.clients) >= 2 * self._server.hub.limits.clients:  # so many that not even the error can be said to all
+        hub = self._server.hub
+        _keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
+        self._session = hub.open(self._loop.time())
+        if len(self._server.clients) >= 2 * hub.limits.clients:  # so many that not even the error can be said to all
             self._transport.abort()
             return
+        self._session.peer = ":".join(map(str, (self._transport.get_extra_info("peername") or ())[:2]))
+        self._session.known_as(hub.access.by_certificate(common_name(self._transport)))
         self._server.clients[self._session.client] = self
+        connection = transport.get_extra_info("socket")
+        if connection is not None and transport.get_extra_info("sslcontext") is None:
+            self._fd = connection.fileno()
+            self._before = (self._session.queue, self._session.subscriptions.due)
+            self._session.subscriptions.sink = self.send_now
         self.flush()
 
     def data_received(self, data: bytes) -> None:
         """Bytes: taken in slices, so that a big message of one client does not hold up the others."""
-        self._unread.extend(data[at : at + SLICE_BYTES] for at in range(0, len(data), SLICE_BYTES))
-        if not self._is_reading:
+        if self._is_ending:
+            self._discard(data)
+            return
+        if self._unread:
+            self._unread.extend(data[at : at + SLICE_BYTES] for at in range(0, len(data), SLICE_BYTES))
+            return
+        self._session.receive(data[:SLICE_BYTES], self._loop.time())
+        self.flush()
+        if len(data) > SLICE_BYTES:
+            self._unread.extend(data[at : at + SLICE_BYTES] for at in range(SLICE_BYTES, len(data), SLICE_BYTES))
             self._transport.pause_reading()
-            self._is_reading = True
-            self._read_slice()
+            self._loop.call_soon(self._read_slice)
 
     def eof_received(self) -> bool:
         """The client has said all; he may still wait for answers."""
@@ -71,71 +90,84 @@ class ClientProtocol(asyncio.Protocol):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Gone."""
-        if self._timer is not None:
-            self._timer.cancel()
         self._unread.clear()
         self._server.clients.pop(self._session.client, None)
         self._server.hub.close(self._session)
 
     # our own -----------------------------------------------------------------------------------------------------
+    def _discard(self, data: bytes) -> None:
+        """What comes after the end: only a stop in a flood is still heard. Who goes on and on is not read any more."""
+        self._session.receive(data, self._loop.time())
+        self._discarded += len(data)
+        if self._discarded > self._server.hub.limits.discard_bytes:
+            self._transport.pause_reading()
+
     def _read_slice(self) -> None:
         if self._transport.is_closing():
             return
-        if self._unread:
-            self._session.receive(self._unread.popleft(), self._loop.time())
-            self.flush()
+        self._session.receive(self._unread.popleft(), self._loop.time())
+        self.flush()
         if self._unread:
             self._loop.call_soon(self._read_slice)
             return
-        self._is_reading = False
-        self._transport.resume_reading()
+        if self._discarded <= self._server.hub.limits.discard_bytes:
+            self._transport.resume_reading()
         self._end_if_served()
 
     def flush(self) -> None:
-        """Write what is to be sent, look after the client's manners, and come back when time demands it."""
-        if self._transport.is_closing() or self._is_ending:
+        """Write what is to be sent: values only if the client reads."""
+        session = self._session
+        if self._is_ending or self._transport.is_closing():
             return
-        now_s = self._loop.time()
-        self._session.tick(now_s, self._transport.get_write_buffer_size())
-        out = self._session.to_send(now_s, 0 if self._is_full else self._server.hub.limits.write_mark_bytes)
+        if self._is_full:
+            session.tick(self._loop.time(), self._transport.get_write_buffer_size())
+        out = session.to_send(self._loop.time(), 0 if self._is_full else self._server.hub.limits.write_mark_bytes)
         if out:
             self._transport.write(out)
-        if self._session.closing:
+        if session.closing:
             self._end()
-            return
-        self._end_if_served()
-        self._wake_at(self._session.next_due_s() if not self._is_full else now_s + 1.0)
+        elif self._at_eof:
+            self._end_if_served()
 
-    def _wake_at(self, due_s: float) -> None:
-        if self._timer is not None:
-            if self._timer_due_s <= due_s and not self._timer.cancelled():
-                return
-            self._timer.cancel()
-        self._timer, self._timer_due_s = self._loop.call_at(due_s, self._on_timer), due_s
+    def send_now(self, line: bytes) -> bool:
+        """Write a line to the socket itself, where nothing waits before it: that costs half of what a transport's write does."""
+        transport, (replies, values) = self._transport, self._before
+        if replies or values or self._is_ending or transport.get_write_buffer_size() or transport.is_closing():
+            return False
+        try:
+            sent = os.write(self._fd, line)
+        except BlockingIOError:
+            return False
+        except OSError:  # gone; the transport will hear of it
+            return True
+        if sent < len(line):
+            transport.write(line[sent:])
+        return True
 
-    def _on_timer(self) -> None:
-        self._timer = None
-        self.flush()
+    def tick(self, now_s: float) -> None:
+        """Look after the client's manners."""
+        if not self._is_ending and not self._transport.is_closing():
+            self._session.tick(now_s, self._transport.get_write_buffer_size())
+            if self._session.closing:
+                self.flush()
 
     def _end_if_served(self) -> None:
         """A client that has said all is let go when nothing of his is unread or unanswered."""
-        if self._at_eof and not self._unread and not self._session.is_waiting:
+        if self._at_eof and not self._unread and not self._session.is_waiting and not self._transport.is_closing():
             self._transport.close()
-            self._abort_after(self._server.hub.limits.idle_s)  # one that does not read what waits must go, too
-
-    def _abort_after(self, seconds: float) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-        self._timer = self._loop.call_later(seconds, self._transport.abort)
+            self._loop.call_later(self._server.hub.limits.idle_s, self._transport.abort)  # one that does not read what waits must go, too
 
     def _end(self) -> None:
         """Half-close, go on discarding input, then close: a reset would swallow the error."""
         self._is_ending = True
-        self._abort_after(self._server.hub.limits.linger_s)
+        linger_s = self._server.hub.limits.linger_s
         if self._at_eof:
             self._transport.close()
         elif self._transport.can_write_eof():
             self._transport.write_eof()
+        else:  # TLS has no half-close: the error is sent, then all ends
+            self._loop.call_later(linger_s, self._transport.close)
+        self._loop.call_later(2.0 * linger_s if not self._transport.can_write_eof() else linger_s, self._transport.abort)
 
 
 class Served(Protocol):
@@ -144,18 +176,28 @@ class Served(Protocol):
     def flush(self) -> None:
         """Something of his may have to be sent."""
 
+    def tick(self, now_s: float) -> None:
+        """Look after his manners."""
+
 
 class Server:
     """The clients of one gateway process: those of its listening socket, and those whom the web console brings."""
 
     def __init__(self, hub: Hub) -> None:
         self.hub = hub
+        self.loop = asyncio.get_running_loop()
         self.clients: dict[int, Served] = {}
+        self._ticks = 0
 
     async def listen(self, listener: socket.socket) -> None:
         """Take connections."""
-        loop = asyncio.get_running_loop()
-        await loop.create_server(lambda: ClientProtocol(self), sock=listener)
+        context: ssl.SSLContext | None = self.hub.access.context()
+        wait_s = None if context is None else HANDSHAKE_S
+        await self.loop.create_server(lambda: ClientProtocol(self), sock=listener, backlog=BACKLOG, ssl=context, ssl_handshake_timeout=wait_s)
+
+    def begin(self) -> None:
+        """Look after rates and manners from now on."""
+        self._tick()
 
     def flush(self, clients: Iterable[int]) -> None:
         """These clients have something to be sent."""
@@ -169,6 +211,14 @@ class Server:
         self.hub.shut()
         self.flush(tuple(self.clients))
 
+    def _tick(self) -> None:
+        now_s = self.loop.time()
+        self.loop.call_at(now_s + TICK_S, self._tick)
+        self.flush(self.hub.tick(now_s))
+        self._ticks += 1
+        for protocol in tuple(self.clients.values()) if self._ticks % TICKS_A_SWEEP == 0 else ():
+            protocol.tick(now_s)
+
 
 def _keep_buffers_small(transport: asyncio.Transport, mark_bytes: int) -> None:
     """Kernel and library would hide megabytes of stale values from a slow reader."""
@@ -177,4 +227,10 @@ def _keep_buffers_small(transport: asyncio.Transport, mark_bytes: int) -> None:
     if connection is not None:
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         if hasattr(socket, "TCP_NOTSENT_LOWAT"):
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, LOWAT_BYTES)
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, mark_bytes)
+
+
+def common_name(transport: asyncio.Transport) -> str:
+    """The common name of a verified client certificate, "" without one."""
+    subject = (transport.get_extra_info("peercert") or {}).get("subject", ())
+    return next((value for names in subject for name, value in names if name == "commonName"), "")

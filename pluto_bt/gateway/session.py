@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import hmac
 from typing import TYPE_CHECKING
 
 from pluto_bt.gateway import requests
+from pluto_bt.gateway.access import SCOPES, Key, may, scope_of, shown_scopes
 from pluto_bt.gateway.framing import Message
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.parse import parse
@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from pluto_bt.gateway.hub import Hub
 
 OPERATORS = frozenset({"operator", "shell", "console"})
-CAPABILITIES = ("get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "modules", "describe", "log")
+CAPABILITIES = (
+    "get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "why", "modules", "params", "set", "describe", "log",
+)  # fmt: skip
 
 
 class Session:
@@ -29,19 +31,27 @@ class Session:
 
     Args:
         is_reserve: the connection took one of the operators' places: it must stop the robot or say hello as an operator.
+
+    Attributes:
+        peer: the client's address, for the audit log; the server sets it.
+        name, session: what he said in hello; with a token, the name that belongs to it.
     """
 
     def __init__(self, client: int, hub: Hub, now_s: float, *, is_reserve: bool = False) -> None:
         self.client = client
-        self.subscriptions = Subscriptions()
+        self.peer = self.name = self.session = ""
+        self.subscriptions = Subscriptions(client)
         self._hub = hub
         self._limits = hub.limits
         self._connection = Connection(hub.limits)
+        self.queue = self._connection.queue  # replies that wait for `to_send`
         self._stops = Stops()
-        self._name = ""
-        self._session = ""
+        self._scopes: tuple[str, ...] = () if hub.access.keys else SCOPES
+        self._is_known = not hub.access.keys  # by a token, or by a certificate
         self._greeted = False
+        self._answered_s = now_s  # when the executive last answered: what he told before is out of date
         self._is_reserve = is_reserve
+        self._has_stopped = False
         self._outstanding = 0
         self._began_s = now_s
         self._heard_s = now_s
@@ -52,9 +62,19 @@ class Session:
         return self._outstanding > 0 or self._stops.is_under_way
 
     @property
+    def is_stranger(self) -> bool:
+        """True for who sits in an operator's place and has not shown that he is one."""
+        return self._is_reserve and not self._greeted and not self._has_stopped
+
+    @property
     def closing(self) -> bool:
         """The connection ends: send what is left, half-close, discard input."""
         return self._connection.closing
+
+    def known_as(self, key: Key | None) -> None:
+        """The TLS library has verified a client certificate: it stands for a token."""
+        if key is not None:
+            self.name, self._scopes, self._is_known = key.name, key.scopes, True
 
     # from the client ---------------------------------------------------------------------------------------------
     def receive(self, data: bytes, now_s: float) -> None:
@@ -64,9 +84,9 @@ class Session:
             self._take(message, now_s)
 
     def _take(self, message: Message, now_s: float) -> None:
-        if self.closing and message.element.tag not in STOPS:
+        if self.closing and message.tag not in STOPS:
             return
-        id = message.element.get("id", "")[:128]
+        id = message.attrib.get("id", "")[:128]
         try:
             request = parse(message)
             if self._may_speak(request):
@@ -82,9 +102,12 @@ class Session:
         if self._is_reserve and not self._greeted and not (isinstance(request, requests.SayHello) and request.name.partition(" ")[0] in OPERATORS):
             self.fail("too-many-connections", f"the last places are for operators: <stop/>, or hello with a name of {', '.join(sorted(OPERATORS))}")
             return False
-        if self._hub.token and not self._greeted and not is_hello:
-            self.fail("unauthorised", "expected <hello token=\"…\"/> as the first message")
+        if not self._is_known and not is_hello:
+            self.fail("unauthorised", 'expected <hello token="…"/> as the first message')
             return False
+        if not is_hello and not may(self._scopes, request):
+            scope, mine = scope_of(request), shown_scopes(self._scopes)
+            raise RefusedError("read-only", f"expected somebody with the scope {scope}, found {self.name or 'a client'} with {mine}")
         return True
 
     def _do(self, request: AnyRequest, now_s: float) -> None:
@@ -100,11 +123,14 @@ class Session:
                 self.say(hub.describe(request))
             case requests.Subscribe():
                 hub.require_topic(request.topic)
-                self.subscriptions.add(request)
+                old = set(self.subscriptions.flows.values())
+                self.subscriptions.add(request, hub.topics)
                 self.say(Ok(id=request.id))
-                hub.subscribed(self, now_s)
+                hub.joined(self, old, now_s)
+            case requests.Get():
+                self._get(request, now_s)
             case requests.Unsubscribe():
-                if not self.subscriptions.remove(request.topic):
+                if not self.subscriptions.remove(request.topic, hub.topics):
                     raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
                 self.say(Ok(id=request.id))
                 hub.watch()
@@ -119,18 +145,22 @@ class Session:
         if request.version.split(".")[0] != "1":
             self.fail("unsupported-version", f'expected version 1.0, found "{request.version}"', request.id)
             return
-        if self._hub.token and not hmac.compare_digest(request.token.encode(), self._hub.token.encode()):
-            self.fail("unauthorised", "the token is not the one this gateway was started with", request.id)
-            return
+        if not self._is_known or (request.token and self._hub.access.keys):
+            key = self._hub.access.by_token(request.token)
+            if key is None:
+                self.fail("unauthorised", "the token is none of those in the gateway's file of people", request.id)
+                return
+            self.known_as(key)
         self._greeted = True
-        self._name, self._session = request.name, request.session
+        self.name, self.session = self.name or request.name, request.session
         robot = self._hub.robot
-        self.say(Hello(id=request.id, robot=robot, session=self._session, time_s=self._hub.run_s(now_s), capabilities=CAPABILITIES))
+        self.say(Hello(id=request.id, robot=robot, session=self.session, time_s=self._hub.run_s(now_s), capabilities=CAPABILITIES))
 
     def _stop(self, request: Stop | Estop) -> None:
+        self._has_stopped = True
         now = self._stops.add(request)
         if now is not None:
-            self._hub.ask(self.client, self._session, self._name, now)
+            self._hub.ask(self, now)
         if self._stops.is_flood:
             self.fail("rate-limit", "a thousand stops wait for their answer; the robot is being stopped")
 
@@ -138,7 +168,16 @@ class Session:
         if self._outstanding >= self._limits.outstanding:
             raise RefusedError("busy", f"{self._outstanding} requests of this client wait for the executive; wait for their replies")
         self._outstanding += 1
-        self._hub.ask(self.client, self._session, self._name, request)
+        self._hub.ask(self, request)
+
+    def _get(self, request: requests.Get, now_s: float) -> None:
+        """Answered here if what is known here is no older than anything that this client has heard from the executive; else asked for."""
+        is_fresh = not self._outstanding and self._hub.batch_s > self._answered_s
+        newest = self._hub.get(request.topic, now_s)
+        if newest is None or not is_fresh:
+            self._ask(request)
+            return
+        self._connection.send(newest.line(now_s, shown=request.topic, id=request.id))
 
     # to the client -----------------------------------------------------------------------------------------------
     def say(self, reply: AnyReply) -> None:
@@ -152,6 +191,7 @@ class Session:
     def answer(self, answer: Answer, now_s: float) -> None:
         """The executive's word to one of our requests."""
         reply = answer.reply
+        self._answered_s = now_s
         if answer.lane == "stop":
             self._stop_answered(reply)
             return
@@ -168,31 +208,29 @@ class Session:
         for id in ids:
             self.say(with_id(reply, id))
         if following is not None:
-            self._hub.ask(self.client, self._session, self._name, following)
+            self._hub.ask(self, following)
 
-    def events(self, events: list[Newest], now_s: float) -> None:
-        """Events are lines like values, but none is dropped."""
-        flow = self.subscriptions.flow("events")
-        if flow is not None:
-            for event in events:
-                self._connection.send(event.line(now_s, id=flow.wish.id))
+    def events(self, events: list[Newest], now_s: float) -> bool:
+        """Events are lines like values, but none is dropped. True if this client wants them."""
+        flow = self.subscriptions.flows.get("events")
+        for event in events if flow is not None else ():
+            self._connection.send(event.line(now_s, id=flow.wish.id if flow is not None else ""))
+        return flow is not None
 
     def to_send(self, now_s: float, room_bytes: int) -> bytes:
         """Replies, then the values that are due and fit into `room_bytes`."""
-        out = self._connection.to_send()
-        return out if self.closing else out + self.subscriptions.take(now_s, room_bytes - len(out))
+        connection, subscriptions = self._connection, self.subscriptions
+        if not connection.waiting_bytes and not connection.closing:
+            return subscriptions.take(now_s, room_bytes) if subscriptions.due else b""
+        out = connection.to_send()
+        return out if connection.closing else out + subscriptions.take(now_s, room_bytes - len(out))
 
     def tick(self, now_s: float, unread_bytes: int) -> None:
         """Watch the client's manners: silence, and replies that he does not read."""
         limits = self._limits
         if unread_bytes > limits.backlog_bytes:
             self.fail("slow-consumer", f"{unread_bytes} bytes of replies wait unread; expected at most {limits.backlog_bytes}")
-        elif self._hub.token and not self._greeted and now_s - self._began_s >= limits.hello_s:
+        elif (not self._is_known or self.is_stranger) and now_s - self._began_s >= limits.hello_s:
             self.fail("timeout", f"expected hello within {limits.hello_s:g} s")
         elif now_s - self._heard_s >= limits.idle_s:
             self.fail("timeout", f"no byte came for {limits.idle_s:g} s; send <ping/> now and then")
-
-    def next_due_s(self) -> float:
-        """When `tick` or `to_send` has something to do by time alone."""
-        due_s = min(self._heard_s + self._limits.idle_s, self.subscriptions.next_due_s())
-        return min(due_s, self._began_s + self._limits.hello_s) if self._hub.token and not self._greeted else due_s

@@ -2,105 +2,117 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.requests import Subscribe
 
 ALIASES = {"mission": "mission/state"}
 """Short names that the protocol promises."""
+Sink = Callable[[bytes], bool]
+"""Sends a line past all queues, if nothing waits there; False if it cannot be sent at once."""
 
 
 class Flow:
-    """One topic on its way to one client."""
+    """One topic on its way to one client.
 
-    __slots__ = ("dropped", "last_body", "next_s", "seq", "waiting", "wish")
+    Attributes:
+        sink: sends at once; None where that cannot be, or the line is not the same for all clients.
+        seq: of the last value taken or sent.
+        waiting: a value that is not sent yet, because something stands before it.
+        is_over: nobody wants it any more.
+    """
 
-    def __init__(self, wish: Subscribe) -> None:
+    __slots__ = ("client", "dropped", "is_over", "last_body", "period_s", "seq", "shown", "sink", "waiting", "wish")
+
+    def __init__(self, client: int, topic: str, wish: Subscribe, sink: Sink | None) -> None:
+        self.client = client
         self.wish = wish
+        self.shown = wish.topic if wish.topic in ALIASES else ""
+        self.sink = None if self.shown or wish.id or wish.on_change else sink
+        self.period_s = 1.0 / wish.max_rate_hz if wish.max_rate_hz > 0.0 else 0.0
+        self.seq = 0
         self.waiting: Newest | None = None
-        self.next_s = 0.0
-        self.seq = 0  # of the last value seen
         self.dropped = 0
         self.last_body = ""
+        self.is_over = False
 
-    def offer(self, newest: Newest, now_s: float) -> None:
-        """A new value; one that was due and still waits is lost."""
+    def take(self, newest: Newest) -> bool:
+        """Take a value to be sent; what still waited is lost. False if it says nothing new."""
         if newest.seq == self.seq:
-            return
-        if self.wish.max_rate_hz == 0.0:
-            self.dropped += newest.seq - self.seq - 1 if self.seq else 0
-        elif self.waiting is not None and now_s >= self.next_s:
+            return False
+        if self.waiting is not None:
             self.dropped += 1
-        if self.waiting is not None and self.wish.max_rate_hz == 0.0:
-            self.dropped += 1
-        self.waiting = newest
-        self.seq = newest.seq
+        if not self.period_s and self.seq:
+            self.dropped += newest.seq - self.seq - 1
+        self.seq, self.waiting = newest.seq, newest
+        return True
 
-    def take(self, now_s: float) -> bytes:
-        """The line to send now, or b"" if there is none or it is not due."""
-        newest, wish = self.waiting, self.wish
-        if newest is None or now_s < self.next_s:
+    def line(self, now_s: float) -> bytes:
+        """What waits, as the line to send; b"" if the client wants changes only, and nothing has changed."""
+        newest, wish, self.waiting = self.waiting, self.wish, None
+        if newest is None:
             return b""
-        self.waiting = None
         if wish.on_change:
             if newest.body() == self.last_body:
                 return b""
             self.last_body = newest.body()
-        if wish.max_rate_hz > 0.0:
-            period_s = 1.0 / wish.max_rate_hz
-            self.next_s = self.next_s + period_s if now_s - self.next_s < period_s else now_s + period_s
-        line = newest.line(now_s, shown=wish.topic if wish.topic in ALIASES else "", id=wish.id, dropped=self.dropped)
-        self.dropped = 0
-        return line
+        dropped, self.dropped = self.dropped, 0
+        return newest.line(now_s, shown=self.shown, id=wish.id, dropped=dropped)
 
 
 class Subscriptions:
     """The wishes of one client; of several that name a topic the most exact one counts."""
 
-    def __init__(self) -> None:
+    def __init__(self, client: int) -> None:
+        self._client = client
+        self.sink: Sink | None = None  # the server's; set before the first wish
         self._wishes: dict[str, Subscribe] = {}
-        self._flows: dict[str, Flow | None] = {}  # by topic; None = nobody asked for it
+        self.flows: dict[str, Flow] = {}  # by topic
+        self.due: dict[Flow, None] = {}  # flows with a value that waits to be sent, in that order
 
-    def add(self, wish: Subscribe) -> None:
+    def add(self, wish: Subscribe, topics: Iterable[str]) -> None:
         """From now on; the same topic or pattern again replaces the old wish."""
         self._wishes[wish.topic] = wish
-        self._flows.clear()
+        self._join(topics)
 
-    def remove(self, topic: str) -> bool:
+    def remove(self, topic: str, topics: Iterable[str]) -> bool:
         """No more; False if it was never asked for."""
-        self._flows.clear()
-        return self._wishes.pop(topic, None) is not None
+        if self._wishes.pop(topic, None) is None:
+            return False
+        self._join(topics)
+        return True
 
-    def flow(self, topic: str) -> Flow | None:
-        """How `topic` goes to this client, None if it does not."""
-        if topic not in self._flows:
-            wish = self._wish(topic)
-            self._flows[topic] = Flow(wish) if wish else None
-        return self._flows[topic]
-
-    def offer(self, values: Iterable[Newest], now_s: float) -> None:
-        """New values of any topics."""
-        for newest in values:
-            flow = self.flow(newest.topic)
-            if flow is not None:
-                flow.offer(newest, now_s)
+    def end(self) -> None:
+        """The client is gone."""
+        self._wishes.clear()
+        self._join(())
 
     def take(self, now_s: float, room_bytes: int) -> bytes:
         """Lines that are due, as long as there is room; the others wait, and may be replaced by newer ones."""
+        due = self.due
+        if len(due) == 1 and room_bytes > 0:
+            return due.popitem()[0].line(now_s)
         lines: list[bytes] = []
-        for flow in self._flows.values():
-            if room_bytes <= 0:
-                break
-            if flow is not None and flow.waiting is not None:
-                line = flow.take(now_s)
-                lines.append(line)
-                room_bytes -= len(line)
+        while due and room_bytes > 0:
+            flow = next(iter(due))
+            del due[flow]
+            lines.append(flow.line(now_s))
+            room_bytes -= len(lines[-1])
         return b"".join(lines)
 
-    def next_due_s(self) -> float:
-        """When the next waiting value is due; infinity if none waits."""
-        return min((flow.next_s for flow in self._flows.values() if flow is not None and flow.waiting is not None), default=float("inf"))
+    def _join(self, topics: Iterable[str]) -> None:
+        """A flow for every topic that is wished for; those whose wish stands go on as they were."""
+        flows: dict[str, Flow] = {}
+        for topic in topics:
+            wish, old = self._wish(topic), self.flows.get(topic)
+            if wish is not None:
+                flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish, self.sink)
+        for topic, flow in self.flows.items():
+            if flows.get(topic) is not flow:
+                flow.is_over = True
+                self.due.pop(flow, None)
+        self.flows = flows
 
     def _wish(self, topic: str) -> Subscribe | None:
         fitting = [wish for pattern, wish in self._wishes.items() if matches(pattern, topic)]

@@ -11,8 +11,8 @@ import numpy as np
 from pluto_bt.blackboard.codes import status_name
 from pluto_bt.blackboard.messages import FVectorState, LaserScan, Message
 from pluto_bt.gateway.xml_text import Attribute, element, escape, numbers, scalar
+from pluto_bt.runtime.parameters import unit_of
 
-_UNITS = {"s": "s", "m": "m", "rad": "rad", "mps": "m/s", "radps": "rad/s", "mps2": "m/s^2", "v": "V", "ms": "ms"}
 _WIRE_NAMES: dict[type[Message], dict[str, str]] = {LaserScan: {"angle_min_rad": "angle_min", "angle_step_rad": "angle_step", "ranges_m": "ranges"}}
 _ROW_NAMES = {"nodes": "node", "modules": "module"}
 
@@ -36,12 +36,13 @@ def value_line(topic: str, seq: int, stamp_s: float, age_s: float, body: str, *,
     return (element("value", head, body) + "\n").encode()
 
 
-def fields_of(kind: type[Message]) -> tuple[tuple[str, str, str], ...]:
+def fields_of(kind: type[Message]) -> tuple[dict[str, str], ...]:
     """Name on the wire, type and unit of every field, for `describe`."""
     names = _WIRE_NAMES.get(kind, {}) | _ROW_NAMES
     hints = get_type_hints(kind)
     fields = [name for name in kind.__struct_fields__ if name != "stamp_s"]
-    return tuple((names.get(name, name), _type_name(hints[name]), _unit(name)) for name in fields if not (kind is LaserScan and name == "count"))
+    told = [name for name in fields if not (kind is LaserScan and name == "count")]
+    return tuple({"name": names.get(name, name), "type": _type_name(hints[name]), "unit": unit_of(name) if "_" in name else ""} for name in told)
 
 
 def _field(name: str, value: Any) -> str:
@@ -75,6 +76,3 @@ def _type_name(hint: Any) -> str:
         return "rows"
     return "ints" if "int" in text.replace("float", "") and "ndarray" not in text else "floats"
 
-
-def _unit(name: str) -> str:
-    return _UNITS.get(name.rsplit("_", 1)[-1], "") if "_" in name else ""

@@ -9,8 +9,9 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import Event, Message, read_only
 from pluto_bt.blackboard.topics import TOPICS
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.limits import Limits
-from pluto_bt.gateway.replies import AnyReply
+from pluto_bt.gateway.replies import AnyReply, Item
 from pluto_bt.gateway.requests import AnyRequest
 
 TYPES: dict[str, type[Message]] = {topic.name: topic.type for topic in TOPICS}
@@ -23,12 +24,13 @@ class Frame(msgspec.Struct, frozen=True, tag=True, gc=False):
 
 
 class Ask(Frame, frozen=True):
-    """Up: a client's request. `client` counts connections; `session` is "" without a named session; `name` is that of hello."""
+    """Up: a client's request. `client` counts connections; `session` is "" without a named session; `name` and `peer` (his address) are for logs."""
 
     client: int
     session: str
     name: str
     request: AnyRequest
+    peer: str = ""
 
 
 def source_of(ask: Ask) -> str:
@@ -61,9 +63,10 @@ class Welcome(Frame, frozen=True):
     robot: str
     now_s: float
     topics: tuple[str, ...]
-    token: str
+    access: Access
     limits: Limits
     first_client: int
+    catalogue: tuple[Item, ...] = ()
     scenery: Scenery | None = None
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import msgspec
 
 from pluto_bt.blackboard.codes import GotoStatus, LinkStatus
@@ -19,6 +21,9 @@ from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.verdict import Verdict
 from pluto_bt.skills.wall_parameters import WallParameters
+
+if TYPE_CHECKING:
+    from pluto_bt.modules.robot_file import RobotFile
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
 BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
@@ -48,6 +53,11 @@ class Avoid:
             self._skill.reset()
             self._view = self._sent = None
             self._link.start()
+
+    def tune(self, robot: RobotFile) -> None:
+        """Parameters have changed."""
+        self._parameters = robot.avoid
+        self._skill.tune(robot, robot.avoid, robot.drive, robot.wall)
 
     def step(self, now_s: float) -> None:
         """Take a command, look around, command drive, tell the status."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import msgspec
 
@@ -17,6 +17,9 @@ from pluto_bt.skills.drive import Drive as Skill
 from pluto_bt.skills.drive import DriveParameters, DriveSenses
 from pluto_bt.skills.limits import STILL
 from pluto_bt.source import InputError
+
+if TYPE_CHECKING:
+    from pluto_bt.modules.robot_file import RobotFile
 
 AMENDER = "avoid"  # only the upper link amends an order: the same stamp as before
 
@@ -42,6 +45,10 @@ class Drive:
             self._calibrate()
             self._skill.reset()
             self._link.start()
+
+    def tune(self, robot: RobotFile) -> None:
+        """Parameters have changed."""
+        self._skill.tune(robot, robot.drive)
 
     def step(self, now_s: float) -> None:
         """Take a command, keep the base's velocity up to date, tell the status."""

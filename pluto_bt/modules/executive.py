@@ -13,7 +13,9 @@ from pluto_bt.modules.context import Context
 from pluto_bt.modules.contract_guardian import ContractGuardian
 from pluto_bt.modules.job_runner import JobRunner
 from pluto_bt.modules.journal_keeper import JournalKeeper
+from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.tick_log import TickLog
+from pluto_bt.runtime.clock import NS
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.trees.contracts import Kept
 from pluto_bt.trees.executive import Activity
@@ -53,6 +55,10 @@ class Executive:
     def start(self, now_s: float) -> None:
         """Nothing to take."""
 
+    def tune(self, robot: RobotFile) -> None:
+        """Parameters have changed."""
+        self._system.robot.tune(robot)
+
     def stop(self) -> None:
         """Nobody decides any more: the robot stands."""
         self.core.let_go()
@@ -82,7 +88,7 @@ class Executive:
             self.core.take_done()
         self._show_mission(now_s)
         if self._steps % SHOW_MODULES_EVERY == 0:
-            self._modules.put(ModulesState(now_s, tuple(module_state(part) for part in self._system.parts)), now_s)
+            self._modules.put(ModulesState(now_s, tuple(module_state(part, self._clock.now_ns()) for part in self._system.parts)), now_s)
         self._steps += 1
         self.flush(now_s)
 
@@ -144,7 +150,7 @@ class Executive:
             self._mission.put(msgspec.structs.replace(state, stamp_s=now_s, ticks=activity.ticks), now_s)
 
 
-def module_state(part: Part) -> ModuleState:
+def module_state(part: Part, now_ns: int) -> ModuleState:
     """One row of `modules`."""
-    row = part.module
-    return ModuleState(row.name, row.group, part.state, part.steps, part.failures, part.overruns, part.worst_ns / 1e6, part.error)
+    row, age_s = part.module, max(0, now_ns - part.stepped_ns) / NS
+    return ModuleState(row.name, row.group, part.state, part.steps, part.failures, part.overruns, part.worst_ns / 1e6, part.error, age_s)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.port import RobotPort
@@ -17,26 +18,26 @@ class Gateway:
     def __init__(self, context: Context) -> None:
         """Raises: InputError if an address that was asked for cannot be had; the default one in use is only a warning."""
         options = context.system.options
+        self._say, self._options = context.say, options
+        self._restarts, self._is_lost, self._trouble = 0, False, ""
         port = GatewayPort(context)
-        self._watch = port.why_watch
-        self._say = context.say
         self._console: Console | None = None
         if options.web is not None:
             self._console = Console(options.web, scenery(context.map or options.world, options.robot, port.name, mode="live"))
-        self._trouble = ""
-        address = options.gateway or (Address() if options.has_gateway else None)
-        self._link = self._open(port, address, is_asked=options.gateway is not None)
+        self._link = self._open(port, options.gateway or (Address() if options.has_gateway else None))
 
-    def _open(self, port: RobotPort, address: Address | None, *, is_asked: bool) -> GatewayLink | None:
+    def _open(self, port: RobotPort, address: Address | None) -> GatewayLink | None:
         """The link with its ports taken; None if there is nothing to listen on."""
-        link = GatewayLink(port, address, console=self._console)
+        options = self._options
+        audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
+        link = GatewayLink(port, address, options.gateway_access, audit=audit, console=self._console)
         try:
             link.listen()
         except InputError as error:
-            if is_asked or link.address is not None or address is None:
+            if options.gateway is not None or address is None or link.address is not None:
                 raise
             self._trouble = error.faults[0].message
-            return None if self._console is None else self._open(port, None, is_asked=False)
+            return None if self._console is None else self._open(port, None)
         return link
 
     @property
@@ -59,15 +60,25 @@ class Gateway:
         if self.address is not None:
             self._say("info", "gateway", "gateway", f"listening on {self.address}")
         if self.console_address is not None:
-            self._say("info", "web-console", "gateway", f"the web console is at http://{self.console_address}/")
+            access = self._options.gateway_access
+            scheme = "https" if access is not None and access.certificate else "http"
+            self._say("info", "web-console", "gateway", f"the web console is at {scheme}://{self.console_address}/")
 
     def step(self, now_s: float) -> None:
         """Answer, publish, look after the process."""
         if self._link is not None:
-            self._watch.step(now_s)
             self._link.step(now_s)
+            self._tell(self._link)
 
     def stop(self) -> None:
         """Tell the clients, end the process, free the port."""
         if self._link is not None:
             self._link.stop()
+
+    def _tell(self, link: GatewayLink) -> None:
+        """What operators should know of the process."""
+        if link.restarts != self._restarts:
+            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
+        elif link.is_lost and not self._is_lost:
+            self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended; it is started again")
+        self._restarts, self._is_lost = link.restarts, link.is_lost

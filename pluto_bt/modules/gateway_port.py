@@ -5,26 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
-from xml.sax.saxutils import quoteattr
-
-import msgspec
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
-from pluto_bt.commands.files import SHIPPED, package_root
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
-from pluto_bt.gateway.replies import Cause
+from pluto_bt.gateway.replies import Cause, Item, ParamsState
+from pluto_bt.gateway.requests import Params
+from pluto_bt.gateway.setting import message_from
+from pluto_bt.modules.catalogue import catalogue
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
+from pluto_bt.modules.gateway_missions import GatewayMissions
+from pluto_bt.modules.tuning import Tuning
 from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
-from pluto_bt.skills.reasons import STOPPED
-from pluto_bt.trees import Mission, MissionError
+from pluto_bt.source import did_you_mean
 from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire
 ERRANDS_KEPT = 64
-OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 
 
 class Errand(NamedTuple):
@@ -39,10 +38,14 @@ class GatewayPort:
 
     def __init__(self, context: Context) -> None:
         self._system = context.system
-        self._loaded: Mission | None = None
+        self._missions = GatewayMissions(context)
         self._errands: dict[str, Errand] = {}
         self._latch = context.latch
         self.why_watch = WhyWatch(context)
+        self._tuning = Tuning(context.system.options.robot, context.system.tune, context.system.options.params_path)
+        board = context.board
+        self._publishers = {topic.name: board.publisher(topic.name, "gateway") for topic in board.topics if topic.writer == "gateway"}
+        self._is_interactive = False
 
     @property
     def name(self) -> str:
@@ -68,11 +71,13 @@ class GatewayPort:
 
     def stop(self, source: str) -> None:
         """Zero velocity at once; a running mission pauses."""
+        self._touch(stop=source)
         self._system.operator_stop(source)
 
     def estop(self, source: str, reason: str) -> None:
         """As stop, latched until released."""
         self._latch.set(ESTOP, reason or "emergency stop")
+        self._touch(estop=reason)
         self._system.operator_stop(source, ESTOP)
         self._system.say("error", ESTOP, source, f"emergency stop: {reason or 'no reason given'}")
 
@@ -88,27 +93,19 @@ class GatewayPort:
 
     def post_command(self, target: str, command: ActuatorState, source: str) -> None:
         """Give a command to a link of the chain or to the wrist."""
-        self._refuse_if_latched()
-        if self._mission_runs():
-            raise RefusedError("wrong-state", "a mission runs; pause it first")
+        self._missions.require_idle("pause it first")
         if target != "wrist":
             self._latch.release(OPERATOR_STOP)  # a new command is a deliberate act
+        self._touch(command=target)
         if self._system.inboxes[LINK_OF_TARGET[target]].post(source, command):
             raise RefusedError("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
 
     def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
         """Start one node as an errand."""
-        self._refuse_if_latched()
-        if self._mission_runs():
-            raise RefusedError("wrong-state", "a mission runs; pause it first")
-        attributes = "".join(f" {name}={quoteattr(value)}" for name, value in ports.items())
-        try:
-            mission = self._load(f'<root BTCPP_format="4"><BehaviorTree ID="run"><{node}{attributes}/></BehaviorTree></root>')
-        except MissionError as error:
-            fault = error.faults[0]
-            code = "unknown-node" if fault.code == "unknown-node" else "bad-value"
-            raise RefusedError(code, "; ".join(filter(None, (fault.message, fault.expected and f"expected {fault.expected}", fault.mend)))) from None
+        self._missions.require_idle("pause it first")
+        mission = self._missions.single(node, ports)
         self._latch.release(OPERATOR_STOP)
+        self._touch(run=node)
         activity = self._system.executive.core.start_errand(mission)
         while len(self._errands) >= ERRANDS_KEPT:
             del self._errands[next(iter(self._errands))]
@@ -136,39 +133,22 @@ class GatewayPort:
             self._system.executive.core.end_errand(errand.activity, reason)
 
     def mission_state(self) -> MissionState:
-        """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
-        sample, coming = self._system.board.newest("mission/state"), self._system.executive.core.coming_state
-        known = sample.value if sample is not None and isinstance(sample.value, MissionState) else MissionState(self.now_s())
-        return known if known.state == coming else msgspec.structs.replace(known, state=coming, reason="")
+        """The mission, with what has been ordered already."""
+        return self._missions.state()
 
     def mission_names(self) -> Sequence[str]:
         """The shipped missions."""
-        return sorted(path.name for path in (package_root() / SHIPPED["mission"][0]).glob("*.xml"))
+        return self._missions.names()
+
+    def mission_text(self, name: str) -> str:
+        """The document of a shipped mission, or of the one at work."""
+        return self._missions.text(name)
 
     def mission(self, op: str, name: str, text: str, source: str) -> None:
         """Load, check, start, pause, resume, abort."""
-        core = self._system.executive.core
-        if op in ("load", "check"):
-            loaded = self._load_named(name, text)
-            self._loaded = loaded if op == "load" else self._loaded
-        elif op == "start":
-            self._refuse_if_latched()
-            if self._loaded is None:
-                raise RefusedError("wrong-state", 'no mission is loaded; send <mission op="load" name="…"/> first')
-            if self._mission_runs():
-                raise RefusedError("wrong-state", "a mission runs; abort it first")
-            self._latch.release(OPERATOR_STOP)
-            core.start(self._loaded)
-        elif op == "abort":
-            core.abort(STOPPED)
-        elif op in OPS_OF_STATE:
-            if op == "resume":
-                self._refuse_if_latched()
-            if self.mission_state().state != OPS_OF_STATE[op]:
-                raise RefusedError("wrong-state", f"the mission is {self.mission_state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
-            core.pause(OPERATOR_STOP) if op == "pause" else self._system.operator_resume()
-        else:
-            raise RefusedError("invalid", f'mission op="{op}" is not offered')
+        if op not in ("load", "check"):
+            self._touch(mission=op)
+        self._missions.act(op, name, text)
 
     def tree_text(self, format: str) -> str:
         """The tree drawn."""
@@ -183,33 +163,51 @@ class GatewayPort:
 
     def modules(self) -> ModulesState:
         """Every module of the run."""
-        return ModulesState(self.now_s(), tuple(module_state(part) for part in self._system.parts))
+        return ModulesState(self.now_s(), tuple(module_state(part, self._system.clock.now_ns()) for part in self._system.parts))
 
     def module(self, name: str, op: str, source: str) -> None:
         """Start or stop a module."""
-        try:
-            self._system.order_module(name, op == "start")
-        except KeyError:
-            raise RefusedError("unknown-module", f'no module "{name}"') from None
+        names = [part.module.name for part in self._system.parts]
+        if name not in names:
+            raise RefusedError("unknown-module", f'no module "{name}"; {did_you_mean(name, names) or "one of: " + ", ".join(names)}')
+        self._touch(module=name, op=op)
+        self._system.order_module(name, op == "start")
 
-    def _mission_runs(self) -> bool:
-        state: str = self._system.executive.core.coming_state
-        return state == RUNNING
+    def params(self, request: Params, source: str) -> ParamsState:
+        """Look at parameters, or change them."""
+        state, changed = self._tuning.answer(request, self.now_s())
+        self._tell_change(changed, source)
+        return state
 
-    def _refuse_if_latched(self) -> None:
-        hold = self._latch.hold(ESTOP)
-        if hold is not None:
-            raise RefusedError("estopped", f"emergency stop ({hold.text}); release it first")
+    def step(self, now_s: float) -> None:
+        """Watch the situation; a change of parameters that nobody confirmed goes back."""
+        self.why_watch.step(now_s)
+        self._tell_change(self._tuning.step(now_s), "nobody confirmed: gateway")
 
-    def _load(self, text: str) -> Mission:
-        mission = self._system.options.load(text)
-        mission.attach(self._system.robot)
-        return mission
+    def set_topic(self, topic: str, fields: Mapping[str, str], source: str) -> None:
+        """Write one of the gateway's own topics."""
+        known = {row.name: row for row in self._system.board.topics}
+        if topic not in known:
+            raise RefusedError("unknown-topic", f'unknown topic "{topic}"; {did_you_mean(topic, known) or "<describe/> lists all"}')
+        if topic not in self._publishers:
+            raise RefusedError("read-only", f"{topic} is written by {known[topic].writer}; clients may set {', '.join(self._publishers)}")
+        value = message_from(known[topic].type, fields, self.now_s())
+        self._touch(set=topic)
+        self._publishers[topic].put(value, self.now_s())
 
-    def _load_named(self, name: str, text: str) -> Mission:
-        if not text and name not in self.mission_names():
-            raise RefusedError("bad-mission", f'no mission "{name}" is shipped; send it inline')
-        try:
-            return self._load(text or str(package_root() / SHIPPED["mission"][0] / name))
-        except MissionError as error:
-            raise RefusedError("bad-mission", str(error)) from None
+    def catalogue(self) -> Sequence[Item]:
+        """Nodes, parameters and modules."""
+        return catalogue(self._system.parts)
+
+    def _tell_change(self, changed: Mapping[str, str], source: str) -> None:
+        if changed:
+            self._touch(params=dict(changed))
+            self._system.say("info", "params-changed", source, ", ".join(f"{name} = {value}" for name, value in changed.items()))
+
+    def _touch(self, **what: object) -> None:
+        """Somebody interferes: the trace says so, for such a run cannot be repeated by its seed alone."""
+        entry = {"t": self._system.clock.now_ns(), "gateway": what}
+        if not self._is_interactive:
+            self._is_interactive = True
+            entry["interactive"] = True
+        self._system.trace.line(entry)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from pluto_bt.blackboard.codes import Avoidance, GotoStatus, LinkStatus, MotionStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, JobState, Pose, RectangleState
 from pluto_bt.modules.context import Context
@@ -12,6 +14,9 @@ from pluto_bt.skills.motion import Motion as Skill
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.rectangle import Rectangle
+
+if TYPE_CHECKING:
+    from pluto_bt.modules.robot_file import RobotFile
 
 POSE_STALE_S = 1.0  # a job may be ordered with an older pose than one may steer by
 
@@ -39,6 +44,10 @@ class Motion:
             self._skill.reset()
             self._sent = None
             self._link.start()
+
+    def tune(self, robot: RobotFile) -> None:
+        """Parameters have changed."""
+        self._skill.parameters = robot.motion
 
     def step(self, now_s: float) -> None:
         """Take a command, pass it down, tell the status."""

@@ -51,11 +51,12 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
     resume: ResumeParameters = ResumeParameters()
 
 
-def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | None = None) -> RobotFile:
+def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | None = None, overlay: Path | None = None) -> RobotFile:
     """The robot file of a shipped platform or at a path, with `--set` settings applied.
 
     Args:
         named_at: where a file that does not exist is told, if not by its own name.
+        overlay: a file (`--params`) whose tables are laid over the platform's, before the settings; it need not exist yet.
     Raises: InputError with every fault of the file and of the settings.
     """
     faults = Faults()
@@ -66,10 +67,11 @@ def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | N
         override(table, settings, RobotFile, faults)  # their faults are told, too
     else:
         table, locate = read_toml(text, name if name.endswith(".toml") else f"{name}.toml", faults)
+        laid: dict[tuple[str, ...], Place] = {} if overlay is None else _lay_over(table, overlay, faults)
         is_read = not faults.has_errors
         set_at = override(table, settings, RobotFile, faults)
         if is_read:
-            robot = build(RobotFile, table, lambda path: set_at.get(path) or locate(path), faults)
+            robot = build(RobotFile, table, lambda path: set_at.get(path) or laid.get(path) or locate(path), faults)
         if robot is not None:
             _check_body(robot, locate(("body", "outline_m")), faults)
             key = ("drive", "calibration_file")
@@ -77,6 +79,33 @@ def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | N
     faults.raise_errors()
     assert robot is not None  # build gives None only together with a fault
     return robot
+
+
+def overlay_names(path: Path) -> frozenset[str]:
+    """The dotted names that a `--params` file sets; none if it is not there."""
+    return frozenset(".".join(names) for names in _lay_over({}, path, Faults()))
+
+
+def _lay_over(table: dict[str, Any], path: Path, faults: Faults) -> dict[tuple[str, ...], Place]:
+    """Write the values of a `--params` file into `table`; where each one stands."""
+    if not path.exists():
+        if not path.parent.is_dir():
+            faults.error(Place(f"--params {path}"), "no-folder", "there is no such folder", mend=f"mkdir -p {path.parent}")
+        return {}
+    over, locate = read_toml(path, str(path), faults)
+    places: dict[tuple[str, ...], Place] = {}
+    waiting: list[tuple[tuple[str, ...], dict[str, Any], dict[str, Any]]] = [((), table, over)]
+    while waiting:
+        above, into, values = waiting.pop()
+        for key, value in values.items():
+            here = (*above, key)
+            inner = into.get(key)
+            if isinstance(value, dict) and isinstance(inner, dict | None):
+                waiting.append((here, into.setdefault(key, {}), value))
+            else:
+                into[key] = value
+                places[here] = locate(here)
+    return places
 
 
 def _text_of(name: str, named_at: Place, faults: Faults) -> str | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
@@ -17,6 +18,9 @@ from pluto_bt.modules.scan_views import ScanViews
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.plan_parameters import PlanParameters
 from pluto_bt.skills.sight import ScanView
+
+if TYPE_CHECKING:
+    from pluto_bt.modules.robot_file import RobotFile
 
 SOURCE = "mission"
 GOALS_KEPT = 200
@@ -58,6 +62,13 @@ class RobotLink:
     def refresh(self, now_s: float) -> None:
         """Take the snapshot that the next tick sees."""
         self._snapshot = self._context.board.snapshot(now_s, self.reads)
+
+    def tune(self, robot: RobotFile) -> None:
+        """Parameters have changed: they count for the next job and the next way."""
+        if self._surroundings is not None:
+            self._surroundings.tune(robot.motion)
+        if self._navigation is not None:
+            self._navigation.parameters = robot.plan
 
     @property
     def surroundings(self) -> Surroundings:

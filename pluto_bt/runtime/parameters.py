@@ -85,12 +85,12 @@ def _value(declared: Any, raw: Any, locate: Locate, faults: Faults, path: tuple[
         value = msgspec.convert(raw, declared, strict=True)
         if _is_finite(value):
             return value
-        faults.error(locate(path), "bad-value", f"{'.'.join(path)}: not a finite number", expected=_kind_text(declared), found=_shown(raw))
+        faults.error(locate(path), "bad-value", f"{'.'.join(path)}: not a finite number", expected=_kind_text(declared), found=shown(raw))
         return _FAULTY
     except msgspec.ValidationError as error:
         message = str(error).replace("`", "").partition(" - at ")[0]
         what = f"{'.'.join(path)}: {message[0].lower()}{message[1:]}"
-        faults.error(locate(path), "bad-value", what, expected=_kind_text(declared), found=_shown(raw))
+        faults.error(locate(path), "bad-value", what, expected=_kind_text(declared), found=shown(raw))
         return _FAULTY
 
 
@@ -101,7 +101,8 @@ def _is_finite(value: Any) -> bool:
     return not isinstance(value, float) or math.isfinite(value)
 
 
-def _shown(raw: Any) -> str:
+def shown(raw: Any) -> str:
+    """A value as a settings file or `--set` would hold it; long lists are cut."""
     text = json.dumps(raw, default=str)
     return text if len(text) <= 80 else text[:77] + "..."
 
@@ -164,7 +165,7 @@ def describe(kind: type[msgspec.Struct], prefix: str = "") -> tuple[Parameter, .
         if struct is not None:
             rows += describe(struct, name + ".")
             continue
-        default = "" if field.required else _shown(field.default) if field.default is not msgspec.NODEFAULT else "…"
+        default = "" if field.required else shown(field.default) if field.default is not msgspec.NODEFAULT else "…"
         rows.append(Parameter(name, unit_of(field.encode_name), _kind_text(field.type), _range_text(field.type), default, _doc(field.type)))
     return tuple(rows)
 

@@ -5,6 +5,7 @@ A `Part` is a component with its row of the table and its record of service. Bot
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
 from typing import Protocol
 
@@ -51,6 +52,7 @@ class Part:
         self.resume_at_ns = 0
         self.has_given_up = False
         self._wanted: bool | None = None  # an order to start or stop, carried out by the part's own thread
+        self._handed: deque[Callable[[], None]] = deque()  # what others want done between two steps
         self._back_off_ns = FIRST_BACK_OFF_NS
         self._budget_ns = round(module.budget_ms * 1e6)
         self.period_ns = module.period_ns
@@ -72,6 +74,10 @@ class Part:
         """Start or stop at the next step, in the part's own thread. Starting twice is harmless."""
         self._wanted = run
 
+    def hand(self, call: Callable[[], None]) -> None:
+        """Have `call` made before the next step, in the part's own thread."""
+        self._handed.append(call)
+
     def step(self, now_ns: int) -> None:
         """One supervised step: never raises (but for what is not an Exception, such as the watchdog's interrupt)."""
         if self._wanted is not None:
@@ -80,6 +86,8 @@ class Part:
             return
         began_ns = wall_ns()
         try:
+            while self._handed:
+                self._handed.popleft()()
             if self.fault == "raise":
                 raise InjectedError(f'the world script lets module "{self.module.name}" raise')
             if self.resume_at_ns and not self.slow_ns:

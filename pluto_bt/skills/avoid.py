@@ -48,6 +48,14 @@ class Avoid:
         self._protection = Protection(self.sight, self._outline, self._limits, latency_s)
         self.reset()
 
+    def tune(self, platform: Platform, parameters: AvoidParameters, drive: DriveParameters, wall: WallParameters) -> None:
+        """Other parameters count from now on; what a goto or wall follow took from them when it began, from the next one on."""
+        self.parameters, self._limits = parameters, drive_limits(platform, drive)
+        self._goto.tune(self._limits, parameters)
+        self._wall.tune(self._limits, wall, parameters)
+        self._protection.limits = self._limits
+        self.sight.tune(parameters)
+
     def reset(self) -> None:
         """No command, nothing seen."""
         self.command: ActuatorState | None = None

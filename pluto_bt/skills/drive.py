@@ -73,8 +73,7 @@ class Drive:
     """The state of the drive between two steps: the command, since when it counts, the twist in force, the latch."""
 
     def __init__(self, platform: Platform, parameters: DriveParameters) -> None:
-        self.parameters = parameters
-        self.limits = drive_limits(platform, parameters)
+        self.tune(platform, parameters)
         self._outline = outline_of(platform.body.outline_m)
         self._latency_s = parameters.period_s + platform.limits.motor_latency_s + platform.limits.motor_time_constant_s
         self._ring = SonarRing(platform.devices.sonar, self._outline) if platform.devices.sonar else None
@@ -83,6 +82,10 @@ class Drive:
         self._latch = BumperLatch()
         self._line = Line()
         self.reset()
+
+    def tune(self, platform: Platform, parameters: DriveParameters) -> None:
+        """These parameters count from now on."""
+        self.parameters, self.limits = parameters, drive_limits(platform, parameters)
 
     def reset(self) -> None:
         """Stand still without a command, as after the start."""

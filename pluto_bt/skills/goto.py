@@ -47,6 +47,10 @@ class Goto:
         self.status = GotoStatus.NONE
         self._goal, self._last_s = (0.0, 0.0), -math.inf
 
+    def tune(self, limits: Limits, parameters: AvoidParameters) -> None:
+        """Speed and tolerance count from the next goal on, the rest at once."""
+        self._most, self.parameters = limits, parameters
+
     def begin(self, command: ActuatorState, now_s: float) -> None:
         """A new goal: position = x, y in Localization/Pose; velocity = most speed and turn rate; force[0]; acceleration[0] = tolerance_m if > 0.
 

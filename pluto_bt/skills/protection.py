@@ -23,7 +23,7 @@ class Protection:
     """Brakes for one robot. It never steers."""
 
     def __init__(self, sight: Sight, outline: Outline, limits: Limits, latency_s: float) -> None:
-        self._sight, self._outline, self._limits, self._latency_s = sight, outline, limits, latency_s
+        self._sight, self._outline, self.limits, self._latency_s = sight, outline, limits, latency_s
 
     def laser_share(self, now_s: float, dead: Planar | None, now: Twist, avoidance: Avoidance, twist: Twist) -> tuple[float, Verdict]:
         """How much of a passed-down twist the laser allows, and why not all.
@@ -55,16 +55,16 @@ class Protection:
         for twist in (wanted, now) if _differs(wanted, now) else (wanted,):
             if twist == STILL:
                 continue
-            span_s = horizon_s(twist, self._limits, self._latency_s)
+            span_s = horizon_s(twist, self.limits, self._latency_s)
             free_s, which = first_contact(points, self._outline.planes, twist[0], twist[1], span_s)
-            allowed = allowed_share(free_s, twist, self._limits, self._latency_s)
+            allowed = allowed_share(free_s, twist, self.limits, self._latency_s)
             if allowed < share:
                 share, verdict = allowed, self._seen(points, which)
         if share > 0.0 and wanted != STILL and points[:, 3:].any():
             which = self._who_is_inside(points)
             if which >= 0:
                 return 0.0, self._seen(points, which)
-            within_s = AWAIT_S + horizon_s(now, self._limits, self._latency_s)
+            within_s = AWAIT_S + horizon_s(now, self.limits, self._latency_s)
             _, which = first_contact(points, self._outline.planes, 0.0, 0.0, within_s)
             if which >= 0:
                 return 0.0, self._seen(points, which)

@@ -42,6 +42,10 @@ class Sight:
         self._obstacles = Obstacles(parameters)
         self.forget()
 
+    def tune(self, parameters: AvoidParameters) -> None:
+        """These parameters count from now on; the reach stays."""
+        self.parameters = self._obstacles.parameters = parameters
+
     def forget(self) -> None:
         """As after the start."""
         self._obstacles.forget()

@@ -58,8 +58,13 @@ class WallFollow:
     """One wall follow from command to end. `LOST` and `STUCK` stay until the next command."""
 
     def __init__(self, outline: Outline, limits: Limits, parameters: WallParameters, avoid: AvoidParameters) -> None:
-        self._outline, self._most, self.parameters, self._avoid = outline, limits, parameters, avoid
-        self._least_m = outline.side_m + avoid.margin_m + CLEAR_M
+        self._outline = outline
+        self.tune(limits, parameters, avoid)
+
+    def tune(self, limits: Limits, parameters: WallParameters, avoid: AvoidParameters) -> None:
+        """For the next wall; when the robot is lost or stuck, at once."""
+        self._most, self.parameters, self._avoid = limits, parameters, avoid
+        self._least_m = self._outline.side_m + avoid.margin_m + CLEAR_M
 
     def begin(self, command: ActuatorState) -> None:
         """A new wall: velocity = most speed and turn rate; `force[DISTANCE]`, `force[SIDE]` where they are given."""

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.client import Client
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import Console, GatewayLink
@@ -21,7 +22,7 @@ class Running:
 
     def __init__(self, console: Console | None = None, token: str = "") -> None:
         self.robot = FakeRobot()
-        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), token, Limits(linger_s=0.3), console)
+        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), whole(token), Limits(linger_s=0.3), console=console)
         self.clock = MonotonicClock()
         self.link.start(0.0)
         self.on_step = lambda: None

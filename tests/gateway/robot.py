@@ -7,7 +7,9 @@ from collections.abc import Mapping, Sequence
 from pluto_bt.blackboard import messages as m
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway.port import Newest, RefusedError, RunState
-from pluto_bt.gateway.replies import Cause
+from pluto_bt.gateway.replies import Cause, Item, Param, ParamsState
+from pluto_bt.gateway.requests import Params
+from pluto_bt.gateway.setting import message_from
 
 
 class FakeRobot:
@@ -24,6 +26,8 @@ class FakeRobot:
         self.latched: str | None = None
         self.mission_now = m.MissionState(0.0)
         self.on_stop: list[object] = []
+        self.rev = 1
+        self.items: list[Item] = []
 
     def write(self, topic: str, value: m.Message) -> None:
         old = self.values.get(topic)
@@ -35,6 +39,9 @@ class FakeRobot:
     # RobotPort ---------------------------------------------------------------------------------------------------
     def now_s(self) -> float:
         return self.time_s
+
+    def step(self, now_s: float) -> None:
+        """Nothing is due."""
 
     def topics(self) -> Sequence[str]:
         return [topic.name for topic in TOPICS]
@@ -104,3 +111,23 @@ class FakeRobot:
         if name != "slam":
             raise RefusedError("unknown-module", f'unknown module "{name}"')
         self.did.append(("module", name, op))
+
+    def mission_text(self, name: str) -> str:
+        return f"<root>{name}</root>"
+
+    def params(self, request: Params, source: str) -> ParamsState:
+        if request.op == "set" and request.rev not in (None, self.rev):
+            raise RefusedError("conflict", f'expected rev="{self.rev}"')
+        if "a.b" in request.values:
+            raise RefusedError("unknown-param", "a.b", more=[RefusedError("out-of-range", "c.d")])
+        self.did.append(("params", request.op, dict(request.values), request.confirm_s))
+        self.rev += request.op == "set"
+        return ParamsState(rev=self.rev, confirm_s=request.confirm_s, rows=(Param("avoid.margin_m", "0.1", "a number", "m", ">= 0", "0.08", True),))
+
+    def set_topic(self, topic: str, fields: Mapping[str, str], source: str) -> None:
+        if topic != "operator/word":
+            raise RefusedError("read-only", f"{topic} is not the gateway's")
+        self.write(topic, message_from(m.Flag, fields, self.time_s))
+
+    def catalogue(self) -> Sequence[Item]:
+        return self.items

@@ -105,7 +105,8 @@ def test_a_space_in_a_text_is_a_space(open_console: Callable[..., Screen], runni
     screen = open_console()
     screen.click("#tab-params")
     screen.page.locator("#params-filter").press_sequentially("a b")
-    assert screen.page.input_value("#params-filter") == "a b" and running.robot.did == []
+    assert screen.page.input_value("#params-filter") == "a b"
+    assert "stop" not in [entry[0] for entry in running.robot.did]
 
 
 def test_a_tap_on_the_map_and_a_second_one_to_be_sure_send_the_robot(open_console: Callable[..., Screen], running: Running) -> None:
@@ -265,3 +266,20 @@ def test_modules_are_started_and_stopped(open_console: Callable[..., Screen], ru
     screen.click("#modules button")
     screen.waits_for("#toast", "slam: start ordered")
     assert running.robot.did == [("module", "slam", "stop"), ("module", "slam", "start")]
+
+
+def test_parameters_are_set_all_or_none_and_go_back_unless_kept(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.click("#tab-params")
+    screen.waits_for("#params", "margin_m", "m · >= 0", "usually 0.08")
+    field = screen.page.locator("#params input")
+    assert field.input_value() == "0.1"
+    field.fill("0.2")
+    screen.waits_for("#params-note", "1 to set")
+    screen.click("#params-set")
+    screen.waits_for("#params-left", "goes back in")
+    screen.click("#params-keep")
+    screen.waits_for("#toast", "Parameters kept")
+    changes = [entry[1:] for entry in running.robot.did if entry[0] == "params" and entry[1] != "get"]
+    assert changes == [("set", {"avoid.margin_m": "0.2"}, 30.0), ("set", {}, 0.0)]
+    assert screen.complaints == []

@@ -21,8 +21,8 @@ def run(pieces: list[bytes], limits: Limits = LIMITS) -> tuple[Seen, FramingErro
         for piece in pieces:
             seen.extend(framer.feed(piece))
     except FramingError as error:
-        return [(str(message.element.tag), message.line, message.column, message.raw) for message in seen], error
-    return [(str(message.element.tag), message.line, message.column, message.raw) for message in seen], None
+        return [(message.tag, message.line, message.column, message.raw) for message in seen], error
+    return [(message.tag, message.line, message.column, message.raw) for message in seen], None
 
 
 def bytewise(data: bytes) -> list[bytes]:

@@ -150,7 +150,7 @@ def test_bad_addresses_are_faults() -> None:
     with open_listener(Address("127.0.0.1", 0)) as taken, pytest.raises(InputError) as error:
         open_listener(Address(*taken.getsockname()))
     assert "cannot listen on 127.0.0.1" in str(error.value) and "mend      stop the other program" in str(error.value)
-    with pytest.raises(InputError, match="without TLS and a token"):
+    with pytest.raises(InputError, match="without TLS and tokens"):
         open_listener(Address("0.0.0.0", 0))
     with pytest.raises(InputError, match="expected  HOST:PORT"):
         parse_address("127.0.0.1:http")

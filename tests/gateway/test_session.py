@@ -10,6 +10,7 @@ from lxml import etree
 
 from pluto_bt import gateway
 from pluto_bt.blackboard import messages as m
+from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.local import LocalClient, LocalGateway
 from pluto_bt.gateway.port import RunState
@@ -25,7 +26,7 @@ class Story:
 
     def __init__(self, limits: Limits | None = None, token: str = "") -> None:
         self.robot = FakeRobot()
-        self.gateway = LocalGateway(self.robot, limits, token)
+        self.gateway = LocalGateway(self.robot, limits, whole(token))
         self.step(0.0)
 
     def client(self, hello: str = "") -> LocalClient:
@@ -83,7 +84,14 @@ def test_a_person_types_a_session(story: Story) -> None:
         ("<ping><a/></ping>", "invalid <ping>: expected no elements, found <a>"),
         ("<command target='drive' flags='0'><velocity>1</velocity></command>", "bad-value <command>: <velocity>: expected 2 numbers, found 1"),
         ("<command target='drive' flags='0'><force>inf</force></command>", "bad-value <command>: <force>: expected finite numbers, found 'inf'"),
-        ("<describe node='GoTo'/>", 'unknown-node <describe node="…"/> is not answered by this version; it describes topics and requests'),
+        ("<describe node='GoTu'/>", 'unknown-node unknown node "GoTu"; <describe/> lists all'),
+        ("<describe node='a' topic='b'/>", "invalid <describe>: expected at most one of topic, node, param, module, found topic, node"),
+        ("<params op='set'><q name='a'>1</q></params>", 'invalid <params>: expected <p name="…">, found <q name>'),
+        ("<params op='set'><p>1</p></params>", 'invalid <params>: expected <p name="…">, found <p>'),
+        ("<params op='set' confirm_s='1e9'/>", 'invalid <params confirm_s="1e9">: expected float <= 3600.0, found "1e9"'),
+        ("<set topic='operator/word'><word>x</word></set>", "invalid expected at least one of the fields <value>, found word"),
+        ("<set topic='tree'><a b='1'>x</a></set>", 'invalid <set>: expected each of its elements once, with a text alone; look at "a"'),
+        ("<set topic='sick/scan'><value>x</value></set>", "read-only sick/scan is not the gateway's"),
         ("<get topic='sick/scan'/>", 'no-value "sick/scan" has no value yet'),
         ("<tree/>", "no-value there is no tree yet"),
         ("<module name='slem' op='stop'/>", 'unknown-module unknown module "slem"'),

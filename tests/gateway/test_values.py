@@ -18,6 +18,7 @@ from pluto_bt.gateway import replies, wire
 from pluto_bt.gateway.describe import describe
 from pluto_bt.gateway.requests import Describe
 from pluto_bt.gateway.values import body_of, fields_of, value_line
+from pluto_bt.modules.catalogue import catalogue
 
 SCHEMA = etree.XMLSchema(etree.parse(str(Path(gateway.__file__).with_name("protocol.xsd"))))
 NASTY = "a <b> & \"c\" 'd'\n\t\x00\x1b\ud800é\U0001f916"
@@ -62,7 +63,7 @@ def test_every_topic_crosses_the_wire_and_validates(topic: Any) -> None:
     value = topic.type(stamp_s=1.5, **needed, **({"angle_min_rad": 0.0, "angle_step_rad": 0.1} if needed else {}))
     assert wire.unpack_value(topic.name, wire.pack_value(value)) == value
     tags = {tag for tag, _ in children(value)} - {"status"}
-    described = {name for name, _, _ in fields_of(topic.type)}
+    described = {field["name"] for field in fields_of(topic.type)}
     assert tags <= described and set(get_type_hints(topic.type)) >= {"stamp_s"}
 
 
@@ -80,8 +81,10 @@ EVERY_REPLY: list[replies.AnyReply] = [
     replies.Tree(tick=3, format="xml", nodes=(m.NodeState(NASTY, "GoTo", NASTY, 1, "RUNNING", NASTY, 1.0),)),
     replies.Modules(state=m.ModulesState(0.0, (m.ModuleState("base", "chain", "running", 1, 0, 0, 0.1, NASTY),))),
     replies.Why(is_moving=False, causes=(replies.Cause("sensor", "laser-stale", NASTY, 4.2, 0.5, NASTY), replies.Cause("node", "running", "", 0.0))),
-    replies.LogLine(seq=1, event=m.Event(1.0, "warning", "say", "x", NASTY)),
-    describe(Describe(), [topic.name for topic in TOPICS]),
+    replies.LogLine(seq=1, event=m.Event(1.0, "warning", "say", "x", NASTY), is_cleared=True),
+    replies.ParamsState(rev=3, confirm_s=1.5, rows=(replies.Param("a.b_m", NASTY, "a number", "m", ">= 0", "1", True),)),
+    replies.Mission(state=m.MissionState(0.0), text=NASTY),
+    describe(Describe(), [topic.name for topic in TOPICS], catalogue(())),
 ]
 
 

@@ -125,7 +125,7 @@ def test_the_shell_and_ps_are_clients_too(robot: Robot) -> None:
     assert robot.pluto("stop", "--gateway", where).stdout == "stopped\n"
     assert robot.pluto("module", "stop", "compass", "--gateway", where).stdout == "compass stopped\n"
     refused = robot.pluto("module", "start", "compas", "--gateway", where)
-    assert (refused.returncode, refused.stderr) == (1, 'pluto module: unknown-module: no module "compas"\n')
+    assert (refused.returncode, refused.stderr) == (1, 'pluto module: unknown-module: no module "compas"; did you mean "compass"?\n')
     drawn = robot.pluto("tree", "--gateway", where, "--format", "ascii").stdout
     assert re.match(r'\{c\} Sequence "patrol"  \[\* RUNNING [\d.]+ s', drawn), drawn
 

@@ -9,6 +9,7 @@ from aiohttp import WSMsgType, web
 
 from pluto_bt.gateway.server import SLICE_BYTES, Server
 from pluto_bt.gateway.session import Session
+from pluto_bt.gateway.web.house import known
 
 FULL_S = 0.05
 """How soon it is looked again whether a slow browser has read."""
@@ -23,10 +24,16 @@ class WebClient:
         self._transport = request.transport
         self._loop = asyncio.get_running_loop()
         self._session: Session = server.hub.open(self._loop.time())
+        self._session.peer = ":".join(map(str, (request.transport.get_extra_info("peername") or ())[:2])) if request.transport else ""
+        self._session.known_as(known(request, server.hub.access))
         self._wake = asyncio.Event()
 
     def flush(self) -> None:
         """Something may have to be sent."""
+        self._wake.set()
+
+    def tick(self, now_s: float) -> None:
+        """Look after the browser's manners: `_write` does, when it is woken."""
         self._wake.set()
 
     async def serve(self) -> None:
@@ -67,8 +74,7 @@ class WebClient:
                 await self._connection.send_str(out.decode())
             if self._session.closing:
                 break
-            due_s = now_s + FULL_S if is_full else self._session.next_due_s()
             with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout_at(due_s if due_s < float("inf") else None):
+                async with asyncio.timeout(FULL_S if is_full else None):
                     await self._wake.wait()
         await self._connection.close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import ssl
 
 from aiohttp import web
 from aiohttp.typedefs import Middleware
@@ -13,6 +14,7 @@ from pluto_bt.gateway.web.house import Handler
 
 CONNECTIONS = 128
 """Connections at one time, WebSockets included."""
+HANDSHAKE_S = 3.0
 PATIENCE_S = 10.0
 """A connection must have asked for something within this time, and again after each answer."""
 
@@ -26,11 +28,11 @@ class Doorkeeper:
         self._busy: set[int] = set()  # ids of the connections whose request is being answered
         self._since_s: dict[RequestHandler, float] = {}
 
-    async def listen(self, listener: socket.socket) -> None:
+    async def listen(self, listener: socket.socket, tls: ssl.SSLContext | None = None) -> None:
         """Take connections, and go round from time to time."""
         await self._runner.setup()
         loop = asyncio.get_running_loop()
-        await loop.create_server(self._admit, sock=listener)
+        await loop.create_server(self._admit, sock=listener, ssl=tls, ssl_handshake_timeout=None if tls is None else HANDSHAKE_S)
         while True:
             await asyncio.sleep(PATIENCE_S / 4)
             self._round(loop.time())

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import hmac
 import ipaddress
 from collections.abc import Awaitable, Callable
 from importlib import resources
 
 from aiohttp import web
 
+from pluto_bt.gateway.access import Access, Key
+from pluto_bt.gateway.server import common_name
 from pluto_bt.gateway.wire import Scenery
 
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
@@ -24,19 +25,19 @@ HEADERS = {
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
-def make_app(scenery: Scenery, token: str = "") -> web.Application:
-    """The page and its scenery; `token` guards the scenery, the page itself says nothing of the robot."""
+def make_app(scenery: Scenery, access: Access) -> web.Application:
+    """The page and its scenery; `access` guards the scenery, the page itself says nothing of the robot."""
     app = web.Application(middlewares=[at_the_door])
     app.on_response_prepare.append(_dress)
     for path, (body, kind) in page_files().items():
         app.router.add_get(f"/{path}".removesuffix("index.html"), _file(body, kind))
 
     async def scene(request: web.Request) -> web.Response:
-        require_token(request, token)
+        require_known(request, access)
         return web.Response(body=scenery.json, content_type="application/json", charset="utf-8")
 
     async def picture(request: web.Request) -> web.Response:
-        require_token(request, token)
+        require_known(request, access)
         body = scenery.pictures.get(request.match_info["name"])
         if body is None:
             raise web.HTTPNotFound
@@ -79,11 +80,17 @@ def is_own_host(host: str) -> bool:
     return True
 
 
-def require_token(request: web.Request, token: str) -> None:
-    """Raises: HTTPUnauthorized if there is a token and the request does not carry it."""
-    given = request.headers.get("Authorization", "").removeprefix("Bearer ")
-    if token and not hmac.compare_digest(given.encode(), token.encode()):
-        raise web.HTTPUnauthorized(text="the token is not the one this gateway was started with\n")
+def known(request: web.Request, access: Access) -> Key | None:
+    """Whose token or client certificate the request carries."""
+    token = request.headers.get("Authorization", "").removeprefix("Bearer ")
+    transport = request.transport
+    return access.by_token(token) or (None if transport is None else access.by_certificate(common_name(transport)))
+
+
+def require_known(request: web.Request, access: Access) -> None:
+    """Raises: HTTPUnauthorized if people must show who they are, and this one did not."""
+    if access.keys and known(request, access) is None:
+        raise web.HTTPUnauthorized(text="expected a token that this gateway knows\n")
 
 
 async def _dress(request: web.Request, response: web.StreamResponse) -> None:

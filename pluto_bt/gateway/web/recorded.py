@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from aiohttp import web
 
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.web.doorkeeper import Doorkeeper
 from pluto_bt.gateway.web.house import make_app
 from pluto_bt.gateway.wire import Scenery
@@ -20,7 +21,7 @@ class RecordedSite:
 
     def __init__(self, scenery: Scenery, moment: Callable[[float], bytes]) -> None:
         self._moment = moment
-        app = make_app(scenery)
+        app = make_app(scenery, Access())
         app.router.add_get("/moment", self._answer)
         self._keeper = Doorkeeper(app)
 

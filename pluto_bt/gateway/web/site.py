@@ -20,13 +20,13 @@ class Site:
 
     def __init__(self, server: Server, scenery: Scenery) -> None:
         self._server = server
-        app = make_app(scenery, server.hub.token)
+        app = make_app(scenery, server.hub.access)
         app.router.add_get("/socket", self._socket)
         self._keeper = Doorkeeper(app)
 
     async def listen(self, listener: socket.socket) -> None:
         """Serve until the loop ends."""
-        await self._keeper.listen(listener)
+        await self._keeper.listen(listener, self._server.hub.access.context())
 
     async def _socket(self, request: web.Request) -> web.WebSocketResponse:
         limits = self._server.hub.limits

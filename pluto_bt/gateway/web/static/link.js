@@ -5,12 +5,13 @@ import { attributes, elements, request, value } from "./wire.js";
 const PING_MS = 1000;
 const LOST_MS = 2500; // no byte for so long: what is shown is old
 const BACK_OFF_MS = [250, 500, 1000, 2000];
-const ANSWER_MS = 5000;
+const ANSWER_MS = 5000, FAULTS_MS = 30;
 
 export class Refused extends Error {
-  constructor(error) {
-    super(error.text || error.code);
-    this.code = error.code;
+  /** `faults`: everything that was said against the request. */
+  constructor(faults) {
+    super(faults.map(({ line, col, text, code }) => (line ? `${line}:${col} ` : "") + (text || code)).join("\n"));
+    this.code = faults[0].code;
   }
 }
 
@@ -78,26 +79,39 @@ export class Link {
     const id = element.getAttribute("id");
     const asked = this.waiting.get(id);
     if (asked && tag !== "progress" && tag !== "result" && tag !== "event") {
-      this.waiting.delete(id);
-      clearTimeout(asked.timer);
       message.rows = [...element.children].map((child) => ({ ...attributes(child), rows: [...child.children].map(attributes) }));
-      if (tag === "error") asked.reject(new Refused(message));
-      else asked.resolve(message);
+      if (tag === "error") this.refuse(id, asked, message);
+      else this.settle(id, asked).resolve(message);
     }
     this.tell(tag, message);
+  }
+
+  settle(id, asked) {
+    this.waiting.delete(id);
+    clearTimeout(asked.timer);
+    return asked;
+  }
+
+  /** All that is wrong with a request comes as one error after the other, so it is heard out. */
+  refuse(id, asked, message) {
+    asked.faults ??= [];
+    asked.faults.push(message);
+    if (asked.faults.length > 1) return;
+    clearTimeout(asked.timer);
+    asked.timer = setTimeout(() => this.settle(id, asked).reject(new Refused(asked.faults)), message.fatal === "true" ? 0 : FAULTS_MS);
   }
 
   /** Send a request; the promise is its direct answer, and fails with `Refused`. */
   ask(tag, given = {}, children = []) {
     return new Promise((resolve, reject) => {
       if (this.socket?.readyState !== WebSocket.OPEN) {
-        reject(new Refused({ code: "no-link", text: "no link to the robot" }));
+        reject(new Refused([{ code: "no-link", text: "no link to the robot" }]));
         return;
       }
       const id = `c${this.next++}`;
       const timer = setTimeout(() => {
         this.waiting.delete(id);
-        reject(new Refused({ code: "no-answer", text: `no answer to ${tag} within ${ANSWER_MS / 1000} s` }));
+        reject(new Refused([{ code: "no-answer", text: `no answer to ${tag} within ${ANSWER_MS / 1000} s` }]));
       }, ANSWER_MS);
       this.waiting.set(id, { resolve, reject, timer });
       this.socket.send(request(tag, { id, ...given }, children));
@@ -124,9 +138,9 @@ export class Link {
     this.socket = null;
     this.isUp = false;
     this.roundTrip_ms = null;
-    for (const { reject, timer } of this.waiting.values()) {
-      clearTimeout(timer);
-      reject(new Refused({ code: "no-link", text: "the link was lost" }));
+    for (const asked of this.waiting.values()) {
+      clearTimeout(asked.timer);
+      asked.reject(new Refused(asked.faults ?? [{ code: "no-link", text: "the link was lost" }]));
     }
     this.waiting.clear();
     this.tell("down");

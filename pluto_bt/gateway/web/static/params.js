@@ -12,6 +12,7 @@ export class Params {
     byId("params-drop").onclick = () => this.load();
     byId("params-keep").onclick = () => this.order({ op: "set" }, "kept");
     byId("params-back").onclick = () => this.order({ op: "rollback" }, "rolled back");
+    byId("params-save").onclick = () => this.order({ op: "save" }, "saved for the next run");
     setInterval(() => this.countDown(), 500);
   }
 

@@ -1,0 +1,49 @@
+"""The plain messages, which are nearly all: one tag with a few attributes, perhaps flat children, printable ASCII. They need no XML parser.
+
+`take` knows a part of XML only; what it does not know it leaves to the parser. What it takes it reads as the parser would
+(tests/gateway/test_plain.py holds them against each other).
+"""
+
+from __future__ import annotations
+
+import re
+
+import msgspec
+
+PLAIN_ATTRIBUTES, PLAIN_DEPTH = 8, 2
+_NAME = r"[A-Za-z_][A-Za-z0-9_.\-]*"
+_ATTRIBUTE = f' +({_NAME})="([ !#-%\'-;=-~]*)"'  # values of printable characters, without & and <
+_START = re.compile(f"[ \\t\\r\\n]*<({_NAME})" + f"(?:{_ATTRIBUTE}" * PLAIN_ATTRIBUTES + ")?" * PLAIN_ATTRIBUTES + " */?>")
+_CHILD = re.compile(f"<({_NAME})>([ !-%'-;=?-~]*)</")  # nor with >: the parser knows where that may stand
+
+
+class Child(msgspec.Struct, frozen=True, gc=False):
+    """An element inside a message; `is_leaf`: with text alone inside."""
+
+    tag: str
+    attrib: dict[str, str]
+    text: str
+    is_leaf: bool = True
+
+
+Plain = tuple[str, dict[str, str], tuple[Child, ...], int, int]
+"""Tag, attributes and children of an element, the positions of its `<` and behind it: a tuple, for this is the way of every message."""
+
+
+def take(text: str, at: int) -> Plain | None:
+    """The plain element that begins at `at`, white space before it or not; None for what only the parser can tell."""
+    found = _START.match(text, at)
+    if found is None:
+        return None
+    words, last, end = found.groups(), found.lastindex or 1, found.end()
+    attrib = dict(zip(words[1:last:2], words[2:last:2], strict=True)) if last > 1 else {}
+    if 2 * len(attrib) + 1 != last or "xmlns" in attrib:  # one stands twice, or declares a name-space
+        return None
+    tag, start = words[0], found.start(1) - 1
+    if text[end - 2] == "/":
+        return tag, attrib, (), start, end
+    close = text.find(f"</{tag}>", end)
+    inner = _CHILD.findall(text, end, close) if close > end else None
+    if not inner or "".join([f"<{name}>{word}</{name}>" for name, word in inner]) != text[end:close]:
+        return None
+    return tag, attrib, tuple([Child(name, {}, word) for name, word in inner]), start, close + len(tag) + 3

@@ -1,0 +1,155 @@
+"""Clients who mean harm, in a process of their own: `python attacker.py ATTACK PORT SECONDS`. Standard library only.
+
+Each attack goes on for so long, beginning anew when it is cut off; at the end it prints one JSON line: how often it was cut off, the codes it was
+told, the most bytes that one connection took, and the longest time until it was cut off.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import socket
+import sys
+import time
+from collections.abc import Callable, Iterator
+
+CHUNK = 64 * 1024
+GIGABYTE = 1 << 30
+BOMB = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10 if i else "lol"}">' for i in range(10))
+UNTIL = [0.0]
+
+
+def endless(head: bytes, filler: bytes, tail: bytes = b"") -> Callable[[], Iterator[bytes]]:
+    """A message whose middle has a gigabyte."""
+
+    def stream() -> Iterator[bytes]:
+        yield head
+        block = filler * (CHUNK // len(filler))
+        for _ in range(GIGABYTE // CHUNK):
+            yield block
+        yield tail
+
+    return stream
+
+
+def once(data: bytes) -> Callable[[], Iterator[bytes]]:
+    """These bytes alone."""
+    return lambda: iter([data])
+
+
+STREAMS: dict[str, Callable[[], Iterator[bytes]]] = {
+    "attribute": endless(b'<ping t="', b"a", b'"/>'),
+    "text": endless(b"<ping>", b"a b ", b"</ping>"),
+    "name": endless(b"<", b"n", b"/>"),
+    "comment": endless(b"<ping><!--", b"- ", b"--></ping>"),
+    "white-space": endless(b"", b" \n"),
+    "mission": endless(b'<mission op="load"><root>', b"<a/>", b"</root></mission>"),
+    "attributes": endless(b"<ping ", b'a="1" ', b"/>"),
+    "bomb": once(f'<!DOCTYPE a [{BOMB}]><ping t="&a9;"/>'.encode()),
+    "xxe": once(b'<!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]><ping t="&x;"/>'),
+    "inner-doctype": once(b'<ping><!DOCTYPE a [<!ENTITY x SYSTEM "file:///etc/passwd">]>&x;</ping>'),
+    "undefined-entity": once(b'<ping t="&nothing;"/>'),
+    "xinclude": once(b'<mission op="check"><root><xi:include href="file:///etc/passwd" parse="text"/></root></mission>x'),
+    "instruction": once(b'<ping><?xml-stylesheet href="file:///etc/passwd"?></ping>'),
+    "depth": endless(b"", b"<a>"),
+    "mission-depth": endless(b'<mission op="load"><root>', b"<a>"),
+    "utf-16": once('<ping t="1"/>'.encode("utf-16")),
+    "nul": once(b'<ping t="\0"/>'),
+    "bad-utf-8": once(b'<ping t="\xc3\x28"/>'),
+    "cut-utf-8": once(b'<ping t="\xe2\x82"/>'),
+    "encoding": once(b'<?xml version="1.0" encoding="UTF-7"?><ping/>'),
+    "tls": once(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03" + bytes(500)),
+    "http": once(b"GET / HTTP/1.1\r\nHost: robot\r\n\r\n"),
+    "pings": lambda: iter([b"<ping/>" * 10_000] * 20),
+    "stops": lambda: iter([b"<stop/>" * 10_000] * 20),
+    "gets": lambda: iter([b'<get topic="sick/scan"/>' * 2_000] * 20),
+}
+
+
+def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]:
+    """Send a stream again and again."""
+    cuts, most, longest_s = 0, 0, 0.0
+    codes: set[str] = set()
+    while time.monotonic() < UNTIL[0] or not cuts:
+        begun_s, sent, heard = time.monotonic(), 0, b""
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=10.0) as connection:
+            try:
+                for chunk in stream():
+                    connection.sendall(chunk)
+                    sent += len(chunk)
+                connection.shutdown(socket.SHUT_WR)
+            except OSError:
+                pass
+            with contextlib.suppress(OSError):
+                while data := connection.recv(CHUNK):
+                    heard += data
+        cuts, most, longest_s = cuts + 1, max(most, sent), max(longest_s, time.monotonic() - begun_s)
+        codes |= {word.split(b'"')[0].decode() for word in heard.split(b'code="')[1:]}
+    return {"cuts": cuts, "codes": sorted(codes), "most_bytes": most, "longest_s": round(longest_s, 2)}
+
+
+def crowd(port: int, count: int, each: Callable[[socket.socket], None]) -> dict[str, object]:
+    """So many connections at once; `each` is done with every one of them again and again."""
+    connections: list[socket.socket] = []
+    while time.monotonic() < UNTIL[0]:
+        while len(connections) < count:
+            with contextlib.suppress(OSError):
+                connections.append(socket.create_connection(("127.0.0.1", port), timeout=5.0))
+                connections[-1].setblocking(False)
+        for connection in list(connections):
+            try:
+                each(connection)
+            except BlockingIOError:
+                pass
+            except OSError:
+                connections.remove(connection)
+        time.sleep(0.02)
+    return {"cuts": 0, "codes": [], "most_bytes": 0, "longest_s": 0.0}
+
+
+def never_read(connection: socket.socket) -> None:
+    """Ask for all there is, and read nothing."""
+    connection.send(b'<subscribe topic="*"/><describe/><modules/><log/>' * 5)
+
+
+def storm(port: int) -> dict[str, object]:
+    """Connect and go, as fast as can be."""
+    cuts = 0
+    while time.monotonic() < UNTIL[0]:
+        with contextlib.suppress(OSError):
+            socket.create_connection(("127.0.0.1", port), timeout=5.0).close()
+            cuts += 1
+    return {"cuts": cuts, "codes": [], "most_bytes": 0, "longest_s": 0.0}
+
+
+def burn(port: int) -> dict[str, object]:
+    """No attack: a program that only needs the processor."""
+    while time.monotonic() < UNTIL[0]:
+        hashlib.sha256(bytes(CHUNK)).digest()
+    return {}
+
+
+CROWDS: dict[str, tuple[int, Callable[[socket.socket], None]]] = {
+    "slowloris": (40, lambda connection: connection.send(b"<") if connection.getpeername() else 0),
+    "half-open": (60, lambda connection: None),
+    "200-connections": (200, lambda connection: None),
+    "never-read": (8, never_read),
+}
+
+
+def main() -> None:
+    """One attack."""
+    name, port = sys.argv[1], int(sys.argv[2])
+    UNTIL[0] = time.monotonic() + float(sys.argv[3])
+    if name in STREAMS:
+        told = shout(STREAMS[name], port)
+    elif name in CROWDS:
+        told = crowd(port, *CROWDS[name])
+    else:
+        told = {"storm": storm, "burn": burn}[name](port)
+    print(json.dumps(told))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,171 @@
+"""Clients from elsewhere: TLS, tokens, client certificates, scopes; and the audit log of what they changed."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import socket
+import ssl
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from pluto_bt.gateway.access import Access, read_access
+from pluto_bt.gateway.audit import Audit
+from pluto_bt.gateway.limits import Limits
+from pluto_bt.gateway.link import GatewayLink
+from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.local import LocalGateway
+from pluto_bt.source import Faults
+
+from .conftest import Running
+from .robot import FakeRobot
+
+PEOPLE = """
+[anna]
+token = "0123456789abcdef-anna"
+scopes = ["watch", "drive"]
+[panel]
+certificate = "panel"
+scopes = ["watch"]
+[chief]
+token = "0123456789abcdef-chief"
+scopes = ["admin"]
+"""
+WAIT_S = 20.0
+
+
+def people_file(folder: Path, text: str = PEOPLE) -> Path:
+    file = folder / "people.toml"
+    file.write_text(text, encoding="utf-8")
+    file.chmod(0o600)
+    return file
+
+
+def access_of(tls: str | None, tokens: str | None) -> Access:
+    faults = Faults()
+    access = read_access(tls, tokens, faults)
+    faults.raise_errors()
+    return access
+
+
+def said(client: object, text: str, gateway: LocalGateway) -> list[str]:
+    client.send(text)  # type: ignore[attr-defined]
+    gateway.step(gateway.now_s + 0.02)
+    return [line.decode() for line in client.received().splitlines()]  # type: ignore[attr-defined]
+
+
+def code(line: str) -> str:
+    return line.split('code="')[1].split('"')[0] if 'code="' in line else line.split(" ")[0].strip("</>")
+
+
+def test_a_scope_says_what_a_person_may_do(tmp_path: Path) -> None:
+    gateway = LocalGateway(FakeRobot(), access=access_of(None, str(people_file(tmp_path))))
+    anna, chief, stranger = gateway.connect(), gateway.connect(), gateway.connect()
+    assert code(said(anna, '<hello name="boss" token="0123456789abcdef-anna"/>', gateway)[0]) == "hello"
+    asked = '<lease op="acquire"/><params/><params op="set"><p name="x">1</p></params><module name="slam" op="stop"/><get topic="tree"/>'
+    assert sorted(map(code, said(anna, asked, gateway))) == ["lease_state", "no-value", "params", "read-only", "read-only"]
+    (state,) = said(anna, '<lease op="query"/>', gateway)
+    assert 'holder="anna"' in state, "the token says who he is, not hello"
+    said(chief, '<hello token="0123456789abcdef-chief"/>', gateway)
+    assert code(said(chief, '<module name="slam" op="stop"/>', gateway)[0]) == "ok"
+    assert code(said(stranger, '<hello token="0123456789abcdef-nobody"/>', gateway)[0]) == "unauthorised"
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("", "no-person"),
+        ('[a]\ntoken = "short"\nscopes = ["watch"]\n', "bad-value"),
+        ('[a]\nscopes = ["watch"]\n', "missing-parameter"),
+        ('[a]\ntoken = "0123456789abcdef"\nscopes = ["wach"]\n', "bad-value"),
+        ('[a]\ntoken = "0123456789abcdef"\nscopes = []\n', "bad-value"),
+        ("a = 1\n", "bad-value"),
+    ],
+)
+def test_a_bad_file_of_people_is_refused(tmp_path: Path, text: str, code: str) -> None:
+    faults = Faults()
+    read_access(None, str(people_file(tmp_path, text)), faults)
+    (fault,) = faults.in_order()
+    assert fault.code == code and (fault.line > 0) == (text != "")
+
+
+def test_secrets_that_others_may_read_are_refused(tmp_path: Path) -> None:
+    file = people_file(tmp_path)
+    file.chmod(0o644)
+    faults = Faults()
+    read_access("one.pem", str(file), faults)
+    assert [(fault.code, fault.mend.split(" ")[0]) for fault in faults.in_order()] == [("open-secret", "chmod"), ("bad-option", "openssl")]
+
+
+def test_the_audit_log_keeps_what_changes_something(tmp_path: Path) -> None:
+    audit = tmp_path / "state" / "audit.jsonl"
+    gateway = LocalGateway(FakeRobot(), access=access_of(None, str(people_file(tmp_path))), audit=Audit(audit))
+    anna = gateway.connect()
+    said(anna, '<hello token="0123456789abcdef-anna" session="s"/><get topic="tree"/><stop/><lease op="acquire"/><lease op="renew"/>', gateway)
+    said(anna, '<run node="GoTo" goal="1;2"/><run node="Nothing"/><mission op="state"/>', gateway)
+    lines = [json.loads(line) for line in audit.read_text(encoding="utf-8").splitlines()]
+    assert [(line["name"], line["request"], line["outcome"]) for line in lines] == [
+        ("anna", "Stop", "ok"), ("anna", "Lease", "ok"), ("anna", "Run", "ok"), ("anna", "Run", "unknown-node"),
+    ]  # fmt: skip
+    assert lines[2]["content"]["ports"] == {"goal": "1;2"} and "0123456789abcdef" not in audit.read_text(encoding="utf-8")
+
+
+def test_an_audit_log_that_cannot_be_written_is_told_and_stops_nobody(tmp_path: Path) -> None:
+    told: list[str] = []
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    gateway = LocalGateway(FakeRobot(), audit=Audit(tmp_path / "file" / "audit.jsonl", told.append))
+    client = gateway.connect()
+    assert [code(line) for line in said(client, "<stop/>", gateway) + said(client, "<stop/>", gateway)] == ["ok", "ok"]
+    assert len(told) == 1 and "cannot be written" in told[0]
+
+
+# real TLS ------------------------------------------------------------------------------------------------------------
+def make_certificates(folder: Path) -> None:
+    """An authority, a server and a client named `panel`, as a person would make them."""
+    def openssl(*words: str) -> None:
+        subprocess.run(["openssl", *words], cwd=folder, check=True, capture_output=True)
+
+    key = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes")
+    openssl("req", "-x509", *key, "-keyout", "ca.key", "-out", "ca.pem", "-days", "2", "-subj", "/CN=test authority")
+    name = ("-subj", "/CN=robot", "-addext", "subjectAltName=IP:127.0.0.1")
+    openssl("req", "-x509", *key, "-keyout", "key.pem", "-out", "cert.pem", "-days", "2", *name)
+    openssl("req", *key, "-keyout", "panel.key", "-out", "panel.csr", "-subj", "/CN=panel")
+    openssl("x509", "-req", "-in", "panel.csr", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-out", "panel.pem", "-days", "2")
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
+def test_over_tls_people_come_by_token_or_certificate(tmp_path: Path, unpumped: Running) -> None:
+    make_certificates(tmp_path)
+    access = access_of(f"{tmp_path / 'cert.pem'},{tmp_path / 'key.pem'},{tmp_path / 'ca.pem'}", str(people_file(tmp_path)))
+    unpumped.link.stop()
+    unpumped.link = GatewayLink(unpumped.robot, Address("0.0.0.0", 0), access, Limits(linger_s=0.3, hello_s=1.0))
+    unpumped.link.start(0.0)
+    unpumped.pump()
+    address = ("127.0.0.1", unpumped.address.port)
+
+    def talk(text: str, certificate: str = "") -> str:
+        context = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
+        if certificate:
+            context.load_cert_chain(tmp_path / f"{certificate}.pem", tmp_path / f"{certificate}.key")
+        with socket.create_connection(address, timeout=WAIT_S) as plain, context.wrap_socket(plain, server_hostname="127.0.0.1") as connection:
+            connection.sendall(text.encode())
+            heard = b""
+            try:
+                while data := connection.recv(65536):
+                    heard += data
+            except ssl.SSLEOFError:
+                pass
+            return heard.decode()
+
+    assert "<pong" in talk('<hello token="0123456789abcdef-anna"/><ping/><bye/>')
+    assert 'code="unauthorised" fatal="true"' in talk("<ping/>")
+    assert 'code="timeout" fatal="true"' in talk(""), "hello within hello_s"
+    assert "<pong" in talk("<ping/><bye/>", "panel"), "the certificate says who it is"
+    assert 'code="read-only"' in talk("<lease op='acquire'/>" + "x", "panel")
+    talk("<stop/>x")
+    assert unpumped.robot.did[-1][0] == "stop", "anyone may stop"
+    with socket.create_connection(address, timeout=WAIT_S) as plain:
+        plain.sendall(b"<ping/>")  # no TLS: the library ends it
+        assert b"<pong" not in plain.recv(4096)

@@ -1,0 +1,123 @@
+"""The gateway before a whole robot in lockstep: what clients change, the robot does; what they ask for is there; every line validates."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from lxml import etree
+
+from pluto_bt import gateway
+from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.gateway.local import LocalClient, LocalGateway
+from pluto_bt.modules.gateway_port import GatewayPort
+from pluto_bt.runner import make_runner
+
+SCHEMA = etree.XMLSchema(etree.parse(str(Path(gateway.__file__).with_name("protocol.xsd"))))
+HALL = '<world name="hall"><wall>-6,-6 30,-6 30,6 -6,6 -6,-6</wall><robot platform="pioneer" x="0" y="0" theta_deg="0"/></world>'
+AHEAD = '<root BTCPP_format="4"><BehaviorTree ID="main"><GoTo name="ahead" goal="{x};0" max_speed_mps="{speed}"/></BehaviorTree></root>'
+
+BAD = '<root BTCPP_format="4"><BehaviorTree ID="a"><Goto/></BehaviorTree>\n<BehaviorTree ID="a"/></root>'
+
+
+class Talk:
+    """One run in which a client says things at times of the run; all that he hears is held against the schema."""
+
+    def __init__(self, folder: Path, says: dict[float, str], *, x: float = 8.0, speed: float = 0.5, **options: Any) -> None:
+        (folder / "world.xml").write_text(HALL, encoding="utf-8")
+        (folder / "m.xml").write_text(AHEAD.format(x=x, speed=speed), encoding="utf-8")
+        self.trace = folder / "trace.jsonl"
+        request = Request(str(folder / "m.xml"), world=str(folder / "world.xml"), **options)
+        self.runner = make_runner(read_inputs(request), max_time_s=60.0, trace_path=self.trace)
+        self.system = self.runner.system
+        self.gateway = LocalGateway(GatewayPort(self.system.context))
+        self.client: LocalClient = self.gateway.connect()
+        self._says = sorted(says.items())
+        self.heard: list[Any] = []
+        self.system.board.on_change("world/state", self._turn)
+        self.result = self.runner.run()
+
+    def _turn(self) -> None:
+        now_s = self.system.clock.now_s()
+        while self._says and now_s >= self._says[0][0]:
+            self.client.send(self._says.pop(0)[1])
+        self.gateway.step(now_s)
+        for line in self.client.received().splitlines():
+            answer = etree.fromstring(line, etree.XMLParser(huge_tree=True))
+            SCHEMA.assertValid(answer)
+            self.heard.append(answer)
+
+    def told(self, id: str) -> list[Any]:
+        return [answer for answer in self.heard if answer.get("id") == id]
+
+    def speeds(self, between: Callable[[float], bool]) -> list[float]:
+        """Forward speeds commanded to the base meanwhile."""
+        lines = map(json.loads, self.trace.read_text(encoding="utf-8").splitlines())
+        return [line["velocity"][0] for line in lines if line.get("command") == "ATRV2/Drive/Command" and between(line["t"] / 1e9)]
+
+
+def test_a_speed_limit_counts_at_once_and_goes_back_if_nobody_confirms_it(tmp_path: Path) -> None:
+    limit = '<params id="slow" op="set" rev="1" confirm_s="4"><p name="drive.max_speed_mps">0.2</p></params>'
+    talk = Talk(tmp_path, {3.0: limit, 5.0: '<params id="get" name="drive.max_speed_mps"/>', 9.0: '<log id="log" since="0" level="info"/>'})
+    assert talk.result.result == "SUCCESS"
+    (changed,) = talk.told("slow")
+    assert (changed.get("rev"), [(p.get("name"), p.text) for p in changed]) == ("2", [("drive.max_speed_mps", "0.2")])
+    assert float(talk.told("get")[0].get("confirm_s")) == pytest.approx(2.0, abs=0.1)
+    assert max(talk.speeds(lambda t: 2.0 < t < 3.0)) == pytest.approx(0.5, abs=0.01)
+    assert max(talk.speeds(lambda t: 4.0 < t < 7.0)) == pytest.approx(0.2, abs=0.01)
+    assert max(talk.speeds(lambda t: 8.0 < t < 10.0)) == pytest.approx(0.5, abs=0.01)
+    changes = [event.text for event in talk.told("log") if event.get("code") == "params-changed"]
+    assert changes == ["drive.max_speed_mps = 0.2", "drive.max_speed_mps = 0.0"]
+    assert '"interactive":true' in talk.trace.read_text(encoding="utf-8")
+
+
+def test_everything_there_is_is_described(tmp_path: Path) -> None:
+    asked = {1.0: '<describe id="all"/><describe id="node" node="GoTo"/><describe id="param" param="avoid.*"/><describe id="module" module="drive"/>'}
+    talk = Talk(tmp_path, asked, x=1.0)
+    kinds = [item.get("kind") for item in talk.told("all")[0]]
+    assert {kind: kinds.count(kind) > 10 for kind in ("topic", "request", "node", "param", "module")} == dict.fromkeys(
+        ("topic", "request", "node", "param", "module"), True
+    )
+    (goto,) = talk.told("node")[0]
+    ports = {field.get("name"): field for field in goto.iter("field")}
+    assert ports["goal"].get("required") == "true" and ports["timeout_s"].get("unit") == "s" and ports["reason"].get("direction") == "out"
+    assert goto.findtext("doc")
+    live = {item.get("name"): (item.get("live"), item.get("unit"), item.get("range")) for item in talk.told("param")[0]}
+    assert live["avoid.margin_m"] == ("true", "m", ">= 0") and live["avoid.laser_stale_s"][0] == "false"
+    (drive,) = talk.told("module")[0]
+    assert (drive.get("group"), drive.get("critical"), drive.get("needs"), drive.get("period_s")) == ("chain", "true", "filter", "0.05")
+
+
+def test_a_long_session_validates(tmp_path: Path) -> None:
+    typed = {
+        0.5: '<hello version="1.0" name="anna" session="s"/><subscribe topic="*" max_rate_hz="1"/><subscribe topic="mission"/>',
+        1.0: '<tree id="t" format="xml"/><tree format="ascii"/><tree format="dot"/><modules id="m"/><why id="w"/><why at="0.8"/><why at="999"/>',
+        1.5: '<mission op="list"/><mission op="state"/><mission id="f" op="fetch"/><mission op="fetch" name="../../etc/passwd"/>',
+        2.0: '<set id="s" topic="operator/word"><value>go</value></set><get id="g" topic="operator/word"/><set topic="tree"><tick>1</tick></set>',
+        2.5: '<lease op="acquire" ttl_s="60"/><estop reason="test"/><run node="GoTo" goal="1;1"/><release what="estop"/>',
+        2.9: '<log id="log"/>',
+        3.0: '<run id="r" node="MakeTurn" angle_deg="20"/>',
+        12.0: '<lease op="release"/><mission op="resume"/><module name="gps" op="stop"/><params op="get" name="no.such"/>',
+        13.0: f'<mission id="bad" op="check">{BAD}</mission>',
+        13.1: '<mission id="inc" op="load"><root BTCPP_format="4"><include path="../secret.xml"/></root></mission>',
+    }
+    talk = Talk(tmp_path, typed, x=3.0)
+    assert talk.result.result == "SUCCESS"
+    nodes = {node.get("name"): node for node in talk.told("t")[0]}
+    assert nodes["ahead"].get("status") == "RUNNING" and float(nodes["ahead"].get("since_s")) >= 0.0
+    ages = {module.get("name"): float(module.get("age_s")) for module in talk.told("m")[0]}
+    assert ages["drive"] <= 0.05 and ages["executive"] <= 0.1
+    assert "<GoTo" in talk.told("f")[0].findtext("document")
+    assert talk.told("s")[0].tag == "ok" and talk.told("g")[0].findtext("value") == "go"
+    assert talk.told("r")[-1].get("state") == "succeeded"
+    cleared = {(event.get("code"), event.get("source")): event.get("cleared") for event in talk.told("log") if event.tag == "event"}
+    assert cleared["estop", "anna"] == "true" and cleared["estop-released", "anna"] == "false"
+    faults = talk.told("bad")
+    assert len(faults) > 1 and {fault.get("line") for fault in faults} == {"1", "2"}
+    assert "includes no files" in talk.told("inc")[0].text
+    codes = [answer.get("code") for answer in talk.heard if answer.tag == "error"]
+    assert codes == ["out-of-range", "bad-mission", "read-only", "estopped", "unknown-module", "unknown-param", *["bad-mission"] * (len(faults) + 1)]
+    assert len({answer.get("topic") for answer in talk.heard if answer.tag == "value"}) > 20
