@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from pluto_bt.gateway.access import whole
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.client import Client
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import Console, GatewayLink
@@ -20,9 +20,9 @@ from .robot import FakeRobot
 class Running:
     """A link that a thread steps, as the scheduler would."""
 
-    def __init__(self, console: Console | None = None, token: str = "") -> None:
+    def __init__(self, console: Console | None = None, access: Access | None = None) -> None:
         self.robot = FakeRobot()
-        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), whole(token), Limits(linger_s=0.3), console=console)
+        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), access, Limits(linger_s=0.3), console=console)
         self.clock = MonotonicClock()
         self.link.start(0.0)
         self.on_step = lambda: None
@@ -39,7 +39,7 @@ class Running:
     def url(self) -> str:
         """Where the web console is."""
         assert self.link.console_address is not None
-        return f"http://{self.link.console_address}"
+        return f"http{'s' if self.link._access.certificate else ''}://{self.link.console_address}"
 
     def renew(self) -> None:
         """Another robot behind the same gateway, in the place of the last one."""

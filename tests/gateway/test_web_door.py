@@ -4,20 +4,29 @@ from __future__ import annotations
 
 import asyncio
 import json
+import shutil
 import socket
+import ssl
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterator
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
+from pathlib import Path
 
 import pytest
 
 from pluto_bt.blackboard import messages as m
+from pluto_bt.commands.option_values import check_web
+from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.wire import Scenery
+from pluto_bt.source import Faults
 
 from .conftest import Running
+from .test_access import access_of, make_certificates, people_file
 
 aiohttp = pytest.importorskip("aiohttp", reason="the web console needs aiohttp (extra web)")
+web = pytest.importorskip("aiohttp.web")
+doorkeeper = pytest.importorskip("pluto_bt.gateway.web.doorkeeper")
 
 SCENERY = Scenery(json.dumps({"robot": {"name": "pluto"}}).encode(), {"grid.png": b"\x89PNG"})
 CONSOLE = Console(Address("127.0.0.1", 0), SCENERY)
@@ -155,7 +164,7 @@ def test_a_browser_that_does_not_read_loses_values_and_nobody_else_does(running:
 
 
 def test_with_a_token_the_scenery_and_the_socket_want_it() -> None:
-    running = Running(CONSOLE, token="sesame")
+    running = Running(CONSOLE, whole("sesame"))
     running.pump()
     try:
         assert ask(f"{running.url}/")[0] == 200, "the page itself says nothing of the robot"
@@ -178,3 +187,67 @@ def test_the_console_comes_back_with_a_gateway_that_was_killed(running: Running)
     process.kill()
     process.wait()
     assert ask(running.url)[0] == 200, "the socket was kept: the caller only waits"
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
+def test_from_elsewhere_it_is_tls_and_a_token_says_who_it_is(tmp_path: Path) -> None:
+    make_certificates(tmp_path)
+    access = access_of(f"{tmp_path / 'cert.pem'},{tmp_path / 'key.pem'},{tmp_path / 'ca.pem'}", str(people_file(tmp_path)))
+    running = Running(Console(Address("0.0.0.0", 0), SCENERY), access)
+    running.pump()
+    url = running.url.replace("0.0.0.0", "127.0.0.1")
+    tls = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
+
+    async def story() -> str:
+        token = "0123456789abcdef-anna"
+        async with aiohttp.ClientSession(connector=aiohttp.TCPConnector(ssl=tls)) as session:
+            assert (await session.get(f"{url}/scenery.json")).status == 401
+            assert (await session.get(f"{url}/scenery.json", headers={"Authorization": f"Bearer {token}", "Host": "robot.example"})).status == 200
+            async with session.ws_connect(f"{url}/socket", origin=url) as connection:
+                await connection.send_str(f'<hello name="console" token="{token}"/><module name="slam" op="stop"/>')
+                said = ""
+                while 'code="read-only"' not in said:
+                    said += await connection.receive_str()
+                return said
+
+    try:
+        assert "<hello" in asyncio.run(story()), "anna may drive, but start and stop no modules"
+        assert running.robot.did == []
+    finally:
+        running.end()
+
+
+def test_a_console_for_elsewhere_without_tls_and_tokens_is_refused() -> None:
+    faults = Faults()
+    check_web("0.0.0.0:0", faults)
+    (fault,) = faults.in_order()
+    assert (fault.code, fault.file) == ("not-loopback", "--web")
+    assert "--gateway-tls" in fault.expected and "ssh -L" in fault.mend
+
+
+def test_connections_that_ask_for_nothing_are_ended_and_others_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doorkeeper, "PATIENCE_S", 0.2)
+    monkeypatch.setattr(doorkeeper, "CONNECTIONS", 4)
+
+    async def story() -> None:
+        app = web.Application()
+        app.router.add_get("/", slow)
+        listener = socket.create_server(("127.0.0.1", 0))
+        serving = asyncio.create_task(doorkeeper.Doorkeeper(app).listen(listener))
+        idle = [await asyncio.open_connection(*listener.getsockname()) for _ in range(3)]
+        idle[0][1].write(b"GET / HTTP/1.1\r\nHost: x\r\n")  # and never the rest
+        asks = await asyncio.open_connection(*listener.getsockname())
+        asks[1].write(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
+        one_too_many = await asyncio.open_connection(*listener.getsockname())
+        assert await one_too_many[0].read() == b""
+        for reader, _ in idle:
+            with suppress(ConnectionError):
+                assert await asyncio.wait_for(reader.read(), 10.0) == b""
+        assert b"here it is" in await asyncio.wait_for(asks[0].readuntil(b"here it is"), 10.0), "it asked, and was waited for"
+        serving.cancel()
+
+    async def slow(request: web.Request) -> web.Response:
+        await asyncio.sleep(0.6)
+        return web.Response(text="here it is")
+
+    asyncio.run(story())

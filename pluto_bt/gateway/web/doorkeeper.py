@@ -26,7 +26,8 @@ class Doorkeeper:
         app.middlewares.append(self._noting())
         self._runner = web.AppRunner(app, access_log=None, keepalive_timeout=PATIENCE_S, lingering_time=0.5)
         self._busy: set[int] = set()  # ids of the connections whose request is being answered
-        self._since_s: dict[RequestHandler, float] = {}
+        self._since_s: dict[RequestHandler, float] = {}  # admitted: since when it has not asked
+        self._open: set[RequestHandler] = set()
 
     async def listen(self, listener: socket.socket, tls: ssl.SSLContext | None = None) -> None:
         """Take connections, and go round from time to time."""
@@ -40,11 +41,21 @@ class Doorkeeper:
     def _admit(self) -> asyncio.Protocol:
         server = self._runner.server
         assert server is not None, "set up before it listens"
-        if len(server.connections) >= CONNECTIONS:
+        now_s = asyncio.get_running_loop().time()
+        self._forget(now_s)
+        if len(self._since_s) >= CONNECTIONS:
             return _Closed()
         connection = server()
-        self._since_s[connection] = asyncio.get_running_loop().time()
+        self._since_s[connection] = now_s
         return connection
+
+    def _forget(self, now_s: float) -> None:
+        """Those that are gone; one that was admitted just now has no transport yet."""
+        self._open |= {connection for connection in self._since_s if connection.transport is not None}
+        for connection, since_s in list(self._since_s.items()):
+            if connection.transport is None and (connection in self._open or now_s - since_s > HANDSHAKE_S):
+                del self._since_s[connection]
+                self._open.discard(connection)
 
     def _noting(self) -> Middleware:
         @web.middleware
@@ -60,10 +71,9 @@ class Doorkeeper:
         return note
 
     def _round(self, now_s: float) -> None:
-        for connection, since_s in list(self._since_s.items()):
-            if connection.transport is None:
-                del self._since_s[connection]
-            elif id(connection) not in self._busy and now_s - since_s >= PATIENCE_S:
+        self._forget(now_s)
+        for connection, since_s in self._since_s.items():
+            if connection.transport is not None and id(connection) not in self._busy and now_s - since_s >= PATIENCE_S:
                 connection.transport.abort()
 
 

@@ -7,6 +7,7 @@ from collections.abc import Awaitable, Callable
 from importlib import resources
 
 from aiohttp import web
+from aiohttp.typedefs import Middleware
 
 from pluto_bt.gateway.access import Access, Key
 from pluto_bt.gateway.server import common_name
@@ -27,7 +28,7 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 def make_app(scenery: Scenery, access: Access) -> web.Application:
     """The page and its scenery; `access` guards the scenery, the page itself says nothing of the robot."""
-    app = web.Application(middlewares=[at_the_door])
+    app = web.Application(middlewares=[_door(may_be_named=bool(access.keys))])
     app.on_response_prepare.append(_dress)
     for path, (body, kind) in page_files().items():
         app.router.add_get(f"/{path}".removesuffix("index.html"), _file(body, kind))
@@ -56,16 +57,21 @@ def page_files() -> dict[str, tuple[bytes, str]]:
     return {entry.name: (entry.read_bytes(), kind) for entry in files if (kind := kinds[entry.name]) is not None}
 
 
-@web.middleware
-async def at_the_door(request: web.Request, handler: Handler) -> web.StreamResponse:
-    """Refuse what another page sends: a foreign Origin, and a Host that is a name which somebody else may have pointed here (DNS rebinding)."""
-    if not is_own_host(request.host):
-        raise web.HTTPForbidden(text=f'Host "{request.host}" is not this robot: open the console by its address, or as localhost\n')
-    origin = request.headers.get("Origin")
-    is_socket = request.headers.get("Upgrade", "").lower() == "websocket"
-    if (origin is not None or is_socket) and origin != f"{request.scheme}://{request.host}":
-        raise web.HTTPForbidden(text="the Origin is not this console\n")
-    return await handler(request)
+def _door(*, may_be_named: bool) -> Middleware:
+    """Refuses what another page sends: a foreign Origin; and, where nobody shows who he is, a Host that is a name, for anybody may point his
+    own name here (DNS rebinding)."""
+
+    @web.middleware
+    async def at_the_door(request: web.Request, handler: Handler) -> web.StreamResponse:
+        if not may_be_named and not is_own_host(request.host):
+            raise web.HTTPForbidden(text=f'Host "{request.host}" is not this robot: open the console by its address, or as localhost\n')
+        origin = request.headers.get("Origin")
+        is_socket = request.headers.get("Upgrade", "").lower() == "websocket"
+        if (origin is not None or is_socket) and origin != f"{request.scheme}://{request.host}":
+            raise web.HTTPForbidden(text="the Origin is not this console\n")
+        return await handler(request)
+
+    return at_the_door
 
 
 def is_own_host(host: str) -> bool:

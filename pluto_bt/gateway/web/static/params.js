@@ -39,6 +39,7 @@ export class Params {
     this.rev = Number(rev);
     this.until_ms = Number(confirm_s) > 0 ? performance.now() + Number(confirm_s) * 1000 : 0;
     say(byId("params-rev"), `revision ${rev}`);
+    rows.sort((a, b) => (b.live === "true") - (a.live === "true")); // what can be changed now comes first
     for (const one of rows) {
       const row = this.rows.get(one.name) ?? this.add(one);
       row.input.value = one.text;
