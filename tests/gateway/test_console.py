@@ -9,6 +9,7 @@ import pytest
 
 from pluto_bt.blackboard import messages as m
 from pluto_bt.commands.files import package_root
+from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.port import RunState
@@ -266,6 +267,41 @@ def test_modules_are_started_and_stopped(open_console: Callable[..., Screen], ru
     screen.click("#modules button")
     screen.waits_for("#toast", "slam: start ordered")
     assert running.robot.did == [("module", "slam", "stop"), ("module", "slam", "start")]
+
+
+def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "running"))
+    screen = open_console()
+    screen.click("#tab-mission")
+    screen.click("[data-op=pause]")
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "paused", "operator-stop"))
+    screen.waits_for("#mission-state", "paused", "operator-stop")
+    screen.click("[data-op=abort]")
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "aborted"))
+    screen.waits_for("#mission-state", "aborted")
+    assert screen.page.is_disabled("[data-op=resume]")
+    screen.page.select_option("#mission-choice", "trip2")
+    screen.click("#mission-start")
+    while len(running.robot.did) < 4:
+        screen.page.wait_for_timeout(10)
+    assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
+
+
+def test_with_people_known_by_tokens_the_page_asks_for_one(browser: Any) -> None:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")), whole("sesame"))
+    one.pump()
+    screen = Screen(browser, one.url)
+    try:
+        for token in ("sesam", "sesame"):
+            screen.page.fill("#token", token)
+            screen.page.keyboard.press("Enter")
+        screen.waits_for("#link", "ms")
+        screen.click("#stop")
+        screen.waits_for("#stop-note", "zero commanded")
+    finally:
+        screen.close()
+        one.end()
 
 
 def test_parameters_are_set_all_or_none_and_go_back_unless_kept(open_console: Callable[..., Screen], running: Running) -> None:
