@@ -90,8 +90,8 @@ export class Mission {
       byId("mission-faults").replaceChildren(...error.message.split("\n").filter((line) => line.trim()).map((line) => make("li", {}, line)));
       return;
     }
-    const isOver = !["running", "paused"].includes(this.store.fields("mission/state")?.state);
-    if (isOver || await this.order({ op: "abort" })) await this.order({ op: "start" });
+    const isRunning = this.store.fields("mission/state")?.state === "running";
+    if (!isRunning || await this.order({ op: "pause" })) await this.order({ op: "start" });
   }
 }
 
