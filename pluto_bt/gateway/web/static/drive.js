@@ -39,6 +39,7 @@ export class Drive {
 
   async arm() {
     try {
+      await this.lease.tighten(true);
       await this.orders.prepare();
       this.isArmed = true;
       this.shown();
@@ -49,7 +50,10 @@ export class Drive {
   }
 
   disarm() {
-    if (this.isArmed) this.letGo();
+    if (this.isArmed) {
+      this.letGo();
+      this.lease.tighten(false).catch(() => {});
+    }
     this.isArmed = false;
     this.shown();
   }

@@ -2,16 +2,17 @@
 
 import { byId, say, show, toast } from "./dom.js";
 
-const TTL_S = 3, RENEW_MS = 700, LOOK_MS = 1000;
+const TTL_S = 3, TTL_DRIVING_S = 1; // so long the robot goes on when the page is gone
+const BEAT_MS = 250, LOOK_MS = 1000;
 
 export class Lease {
   constructor(link) {
-    Object.assign(this, { link, isMine: false, holder: "", listeners: [] });
+    Object.assign(this, { link, isMine: false, holder: "", listeners: [], ttl_s: TTL_S, renewed_ms: 0 });
     byId("lease-take").onclick = () => this.take().catch((error) => toast(error.message));
     byId("lease-give").onclick = () => this.give();
     link.on("up", () => this.look());
     link.on("down", () => this.set(false, ""));
-    setInterval(() => this.isMine && this.renew(), RENEW_MS);
+    setInterval(() => this.isMine && performance.now() - this.renewed_ms >= this.ttl_s * BEAT_MS - 10 && this.renew(), BEAT_MS);
     setInterval(() => !this.isMine && this.look(), LOOK_MS);
   }
 
@@ -38,7 +39,14 @@ export class Lease {
 
   /** Take a free lease; one that somebody holds only if `byForce`. */
   async acquire(byForce = false) {
-    this.heard(await this.link.ask("lease", { op: byForce ? "take" : "acquire", ttl_s: TTL_S, on_loss: "stop" }));
+    this.renewed_ms = performance.now();
+    this.heard(await this.link.ask("lease", { op: byForce ? "take" : "acquire", ttl_s: this.ttl_s, on_loss: "stop" }));
+  }
+
+  /** While somebody drives by hand the robot does not wait long for a page that is gone. */
+  tighten(isDriving) {
+    this.ttl_s = isDriving ? TTL_DRIVING_S : TTL_S;
+    return this.isMine ? this.acquire() : Promise.resolve();
   }
 
   take() {
@@ -50,6 +58,7 @@ export class Lease {
   }
 
   renew() {
+    this.renewed_ms = performance.now();
     this.link.ask("lease", { op: "renew" }).then((state) => this.heard(state)).catch(() => this.look());
   }
 

@@ -1,7 +1,8 @@
 // The map: draws what stands in the scenery and in the store, and only when something has changed.
 
 import { drawGrid, drawWorld, drawPicture, drawScale } from "./map_world.js";
-import { Trail, drawChosen, drawCells, drawGoal, drawLaser, drawPath, drawRectangle, drawRobot, drawSonar, drawTruth } from "./map_robot.js";
+import { Trail, drawChosen, drawGoal, drawPath, drawRectangle, drawRobot, drawTruth } from "./map_robot.js";
+import { drawCells, drawLaser, drawSonar } from "./map_senses.js";
 import { GROUND } from "./colours.js";
 import { View } from "./view.js";
 
