@@ -31,7 +31,7 @@ export class Tree {
       this.shape = shape;
       this.build();
     } else this.refresh();
-    say(byId("tree-head"), nodes.length ? `${nodes[0].name} · ${nodes.length} nodes · tick ${fields.tick}` : "No tree");
+    say(byId("tree-head"), nodes.length ? `${nodes[0].name} · ${nodes.length} node${nodes.length > 1 ? "s" : ""} · tick ${fields.tick}` : "No tree");
   }
 
   /** The panel has come into view. */
