@@ -24,10 +24,10 @@ export class Bar {
     if (document.hidden) return;
     const { store } = this;
     say(byId("clock"), this.clock_s ? clock(this.now_s) : "–");
-    this.gauge("speed", "drive/status", () => `${zero(store.fields("ATRV2/Drive/Raw").velocity[0].toFixed(2))} m/s`, "ATRV2/Drive/Raw");
+    this.gauge("speed", "ATRV2/Drive/Raw", ({ velocity }) => `${zero(velocity[0].toFixed(2))} m/s`);
     const turn = store.fields("ATRV2/Drive/Raw")?.velocity[1];
     say(byId("turn"), turn === undefined || store.isStale("ATRV2/Drive/Raw") ? "" : `${zero((turn * 57.3).toFixed(0))} °/s`);
-    this.gauge("battery", "ATRV2/Battery", () => this.battery());
+    this.gauge("battery", "ATRV2/Battery", ({ voltage_v }) => this.battery(voltage_v));
     const mission = store.fields("mission/state");
     say(byId("mission-chip"), mission ? missionWords(mission) : "–");
     say(byId("mission-reason"), mission ? missionReason(mission) : "");
@@ -36,15 +36,15 @@ export class Bar {
     if (this.link) this.linkState();
   }
 
-  gauge(id, topic, words, source = topic) {
-    const isOld = this.store.isStale(source);
-    const text = this.store.get(source) ? words() : "–";
-    say(byId(id), isOld && this.store.get(source) ? `${text} · ${age(this.store.age_s(source))} old` : text);
+  /** A figure of a topic in words, with its age if that is too high. */
+  gauge(id, topic, words) {
+    const fields = this.store.fields(topic), isOld = this.store.isStale(topic), text = fields ? words(fields) : "–";
+    say(byId(id), isOld && fields ? `${text} · ${age(this.store.age_s(topic))} old` : text);
     byId(`gauge-${id}`).classList.toggle("old", isOld);
   }
 
-  battery() {
-    const volts = this.store.fields("ATRV2/Battery").voltage_v, [empty, full] = this.robot.battery_v;
+  battery(volts) {
+    const [empty, full] = this.robot.battery_v;
     const share = Math.max(0, Math.min(1, (volts - empty) / (full - empty)));
     byId("gauge-battery").dataset.state = share < 0.15 ? "low" : "";
     return `${volts.toFixed(1)} V${share < 0.15 ? " low" : ""}`;

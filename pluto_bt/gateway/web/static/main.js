@@ -66,8 +66,7 @@ function showRobot({ scenery, store, tabs, tree, events, token }) {
 }
 
 function showBox({ scenery, store, tabs, tree, events }) {
-  const box = new Box(store, scenery), bar = new Bar(store, scenery.robot, null), why = Object.create(Why.prototype);
-  why.seen = "";
+  const box = new Box(store, scenery), bar = new Bar(store, scenery.robot, null), why = new Why(null);
   const modules = new Modules(null, store);
   tabs.onOpen("modules", () => modules.look());
   box.on("events", (list) => events.replace(list));

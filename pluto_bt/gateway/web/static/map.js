@@ -96,7 +96,7 @@ export class MapView {
     }
     drawTruth(context, view, store, scenery.robot);
     drawRobot(context, view, store, scenery.robot);
-    if (this.goal) drawChosen(context, view, store, this.goal);
+    if (this.goal) drawChosen(context, view, this.goal);
     drawScale(context, view);
   }
 }

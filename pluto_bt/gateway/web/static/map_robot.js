@@ -171,7 +171,7 @@ export function drawGoal(context, view, store) {
   target(context, x, y, 8);
 }
 
-export function drawChosen(context, view, store, { x, y }) {
+export function drawChosen(context, view, { x, y }) {
   view.inPixels(context);
   context.strokeStyle = WARN;
   context.lineWidth = 2;

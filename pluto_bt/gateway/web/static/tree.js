@@ -80,14 +80,13 @@ export class Tree {
   row(node, i, depth, isParent, isOpen) {
     const sign = make("span", { class: "sign", "aria-hidden": "true" }), word = make("span", { class: "status" }), words = make("span", { class: "words" });
     const since = make("span", { class: "since" });
-    const fold = make("button", { type: "button", class: "fold", "aria-label": isOpen ? "Collapse" : "Expand", disabled: !isParent }, isOpen ? "▾" : "▸");
+    const fold = make("button", { type: "button", class: "fold", "aria-label": "Children", "aria-expanded": String(isOpen), disabled: !isParent }, isOpen ? "▾" : "▸");
     fold.onclick = () => {
       this.opened.set(node.path, !isOpen);
       this.build();
     };
     const title = node.name && node.name !== node.kind ? [make("b", {}, node.name), " ", make("span", { class: "kind" }, node.kind)] : [make("b", {}, node.kind)];
-    const element = make("li", { role: "treeitem", "aria-level": String(depth) }, fold, sign, make("span", { class: "title" }, ...title, words), word, since);
-    if (isParent) element.setAttribute("aria-expanded", String(isOpen));
+    const element = make("li", {}, fold, sign, make("span", { class: "title" }, ...title, words), word, since);
     element.style.setProperty("--depth", String(Math.min(depth - 1, 14)));
     return { element, sign, word, words, since, i, seen: "" };
   }

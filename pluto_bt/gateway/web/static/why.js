@@ -5,9 +5,11 @@ import { age, byId, make, say } from "./dom.js";
 const EVERY_MS = 500;
 
 export class Why {
+  /** Without a link (a recording) it only shows what it is given. */
   constructor(link) {
     this.link = link;
     this.seen = "";
+    if (!link) return;
     setInterval(() => link.isUp && !document.hidden && this.look(), EVERY_MS);
     link.on("up", () => this.look());
     link.on("down", () => this.unknown());
