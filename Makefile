@@ -4,10 +4,10 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test fuzz lint types bench dist clean help
+.PHONY: demo test fuzz fuzz-by-coverage lint types bench dist clean help
 
 help:            ## what there is to make
-	@grep -E '^[a-z]+:.*##' Makefile | sed -E 's/:.*##/  -/'
+	@grep -E '^[a-z-]+:.*##' Makefile | sed -E 's/:.*##/  -/'
 
 $(STAMP): pyproject.toml requirements-dev.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "pluto_bt needs Python 3.11 or newer; make PYTHON=python3.12 …")'
@@ -26,8 +26,17 @@ GOALS ?= 8,3;13.5,3;10.5,8;2,3.5
 test: $(STAMP)   ## set everything up and run all tests
 	$(BIN)/python -m pytest -n 2 -q
 
-fuzz: $(STAMP)   ## loader, scripts and formatter for about ten minutes, elsewhere each time
+fuzz: $(STAMP)   ## loader, scripts and formatter for about ten minutes, elsewhere each time, then led by coverage
 	FUZZ_FACTOR=40 $(BIN)/python -m pytest tests/fuzz -n 2 -q
+	$(MAKE) fuzz-by-coverage FUZZ_SECONDS=300
+
+fuzz-by-coverage: $(STAMP)  ## the same led by coverage (atheris), FUZZ_SECONDS each; what is learnt stays in out/fuzz
+	$(BIN)/pip install --quiet 'atheris>=3'
+	@mkdir -p out/fuzz/missions out/fuzz/scripts
+	$(BIN)/python -m tests.fuzz.by_coverage missions out/fuzz/missions -max_total_time=$(FUZZ_SECONDS)
+	$(BIN)/python -m tests.fuzz.by_coverage scripts out/fuzz/scripts -max_total_time=$(FUZZ_SECONDS)
+
+FUZZ_SECONDS ?= 30
 
 lint: $(STAMP)   ## ruff
 	$(BIN)/ruff check .

@@ -93,7 +93,8 @@ def decide(request: ResumeRequest, inputs: Inputs, mission: Mission, now_ns: int
     if is_same and past.state["nodes"]:
         doubts += [f"entry {key} could not be kept" for key in memory.give_back(mission, past.state)]
     age_s = (now_ns - past.wall_ns) / 1e9
-    told = f"a run of this mission was cut off {age_s:.0f} s ago, after {past.tick} ticks"
+    done = f"after {past.finished[-1][0]} had ended" if past.finished else "before a step had ended"
+    told = f"a run of this mission was cut off {age_s:.0f} s ago, {done}"
     if doubts:
         held = f"{told}; going on is in doubt: {'; '.join(doubts)}"
     elif request.policy == "resume" or (request.policy == "ask" and request.confirm(f"{told}. Go on where it was?")):

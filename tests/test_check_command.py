@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -224,11 +225,24 @@ def test_sarif_holds_what_the_standard_asks_for() -> None:
     driver = run["tool"]["driver"]
     assert run["columnKind"] == "unicodeCodePoints" and driver["name"] == "pluto check"
     assert [rule["id"] for rule in driver["rules"]] == ["bad-port", "unknown-port"]
-    first, second = run["results"]
+    (first,) = run["results"]
     assert (first["ruleId"], first["level"]) == ("unknown-port", "error") and driver["rules"][first["ruleIndex"]]["id"] == first["ruleId"]
     (location,) = first["locations"]
     assert location == {"physicalLocation": {"artifactLocation": {"uri": "my%20dir/m%2C1.xml"}, "region": {"startLine": 3, "startColumn": 7}}}
-    assert "locations" not in second and second["message"]["text"].startswith("--port x: ")
+    (call,) = run["invocations"]
+    (note,) = call["toolConfigurationNotifications"]
+    assert note["message"]["text"].startswith("--port x: ") and driver["rules"][note["associatedRule"]["index"]]["id"] == "bad-port"
+    assert call["executionSuccessful"] is (OPTION.severity != "error")
+
+
+URIS = [("a/b c.xml", "a/b%20c.xml"), ("./m.xml", "m.xml"), ("{here}/m.xml", "m.xml"), ("/else where/m.xml", "file:///else%20where/m.xml")]
+
+
+@pytest.mark.parametrize(("file", "uri"), URIS)
+def test_sarif_names_files_as_seen_from_the_working_folder(file: str, uri: str) -> None:
+    fault = replace(FAULT, file=file.format(here=Path.cwd()))
+    (result,) = json.loads(as_sarif([fault]))["runs"][0]["results"]
+    assert result["locations"][0]["physicalLocation"]["artifactLocation"]["uri"] == uri
 
 
 def test_an_empty_sarif_log_is_a_log(capsys: pytest.CaptureFixture[str]) -> None:

@@ -26,7 +26,7 @@ from tests.doc_texts import RUN_REASONS
 
 XS = "{http://www.w3.org/2001/XMLSchema}"
 FENCE = re.compile(r"^```(\w*)[ ]?(\S*)\n(.*?)^```", re.DOTALL | re.MULTILINE)
-NOT_ALONE = ("--realtime", "pluto shell", "pluto ps", "pluto bench")  # need a running robot, or minutes
+NOT_ALONE = ("--realtime", "pluto shell", "pluto ps", "pluto record", "pluto bench")  # need a running robot, or minutes
 
 
 def text_of(path: Path) -> str:

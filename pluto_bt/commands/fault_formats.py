@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any, Final
 from urllib.parse import quote
 
@@ -29,12 +30,14 @@ def as_github(faults: Sequence[Fault]) -> str:
 
 
 def as_sarif(faults: Sequence[Fault]) -> str:
-    """A log that code-scanning services read; columns count characters."""
+    """A log that code-scanning services read; columns count characters. What is at no place of a file is a word about the call, not a result."""
     codes = sorted({fault.code for fault in faults})
     rules = [{"id": code, "shortDescription": {"text": code.replace("-", " ")}} for code in codes]
     driver = {"name": "pluto check", "version": __version__, "rules": rules}
-    results = [_sarif_result(fault, codes.index(fault.code)) for fault in faults]
-    run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "results": results}
+    results = [_sarif_result(fault, codes.index(fault.code)) for fault in faults if fault.line]
+    notes = [_sarif_note(fault, codes.index(fault.code)) for fault in faults if not fault.line]
+    call = {"executionSuccessful": not any(note["level"] == "error" for note in notes), "toolConfigurationNotifications": notes}
+    run = {"tool": {"driver": driver}, "columnKind": "unicodeCodePoints", "invocations": [call], "results": results}
     return json.dumps({"$schema": SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2, ensure_ascii=False)
 
 
@@ -64,15 +67,23 @@ def _escaped(text: str, more: str = "") -> str:
 
 
 def _sarif_result(fault: Fault, rule: int) -> dict[str, Any]:
-    text = _sentences(fault) if fault.line else f"{fault.file}: {_sentences(fault)}"
-    result: dict[str, Any] = {
-        "ruleId": fault.code,
-        "ruleIndex": rule,
-        "level": fault.severity,
-        "message": {"text": text.encode("utf-8", "backslashreplace").decode()},
-    }
-    if fault.line:
-        region = {"startLine": fault.line} | ({"startColumn": fault.column} if fault.column else {})
-        uri = quote(fault.file.encode("utf-8", "surrogateescape"))
-        result["locations"] = [{"physicalLocation": {"artifactLocation": {"uri": uri}, "region": region}}]
-    return result
+    region = {"startLine": fault.line} | ({"startColumn": fault.column} if fault.column else {})
+    place = {"artifactLocation": {"uri": _uri(fault.file)}, "region": region}
+    return {"ruleId": fault.code, "ruleIndex": rule, **_sarif_words(fault, _sentences(fault)), "locations": [{"physicalLocation": place}]}
+
+
+def _sarif_note(fault: Fault, rule: int) -> dict[str, Any]:
+    return {"associatedRule": {"id": fault.code, "index": rule}, **_sarif_words(fault, f"{fault.file}: {_sentences(fault)}")}
+
+
+def _sarif_words(fault: Fault, text: str) -> dict[str, Any]:
+    return {"level": fault.severity, "message": {"text": text.encode("utf-8", "backslashreplace").decode()}}
+
+
+def _uri(file: str) -> str:
+    """The file as seen from the working folder, which is the root of the checkout where services look; elsewhere, by its full path."""
+    path = Path(file)
+    if path.is_absolute() and path.is_relative_to(Path.cwd()):
+        path = path.relative_to(Path.cwd())
+    uri = quote(str(path.as_posix()).encode("utf-8", "surrogateescape"))
+    return f"file://{uri}" if path.is_absolute() else uri

@@ -14,13 +14,13 @@ INPUT_ENDINGS = (".xml", ".yaml", ".yml", ".map", ".toml", ".py")  # a slip of t
 
 def check_outputs(args: argparse.Namespace, faults: Faults) -> None:
     """A fault for each file that could not be written, and for `--speed` without `--realtime`."""
-    _check(args.plot, "--plot", (".png", ".svg"), faults)
-    _check(args.trace, "--trace", (), faults)
-    _check(args.journal, "--journal", (), faults)
+    check_file(args.plot, "--plot", (".png", ".svg"), faults)
+    check_file(args.trace, "--trace", (), faults)
+    check_file(args.journal, "--journal", (), faults)
     if args.journal is not None and args.resume is None:
         what, mend = "--journal goes with --resume", "add --resume hold, or drop --journal"
         faults.error(Place(f"--journal {args.journal}"), "bad-option", what, expected="--resume", found="--journal alone", mend=mend)
-    _check(args.record, "--record", (".mcap",), faults)
+    check_file(args.record, "--record", (".mcap",), faults)
     if args.record is not None and find_spec("mcap") is None:
         mend = "pip install 'pluto_bt[record]'"
         faults.error(Place(f"--record {args.record}"), "not-installed", "the library mcap is not installed", expected="mcap", mend=mend)
@@ -29,14 +29,18 @@ def check_outputs(args: argparse.Namespace, faults: Faults) -> None:
         faults.error(Place("--speed"), "bad-option", what, expected="--realtime", found=f"--speed {args.speed} alone", mend=mend)
 
 
-def _check(name: str | None, option: str, endings: tuple[str, ...], faults: Faults) -> None:
+def check_file(name: str | None, option: str, endings: tuple[str, ...], faults: Faults, *, is_data: bool = False) -> None:
+    """A fault if `name` could not be written, or has none of the `endings` (if any is asked for).
+
+    With `is_data` the ending of an input file is allowed: what is written is data of the same form.
+    """
     if name is None:
         return
     place, path = Place(f"{option} {name}"), Path(name)
     if endings and path.suffix not in endings:
         what, found = f"{option} does not write this format", path.suffix or name or "nothing"
         faults.error(place, "bad-option", what, expected=" or ".join(endings), found=found)
-    elif path.suffix in INPUT_ENDINGS:
+    elif path.suffix in INPUT_ENDINGS and not is_data:
         faults.error(place, "bad-option", "this is the ending of an input file", expected="FILE.jsonl", found=path.suffix)
     elif os.path.isdir(path):
         faults.error(place, "is-a-folder", f'"{name}" is a folder', expected="a file", found="a folder")

@@ -1,119 +1,77 @@
-"""`--plot`: the world, the path, the goals and the contacts as a picture."""
+"""`pluto plot FILE`: a recorded run as a picture."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from pluto_bt.maps.placement import placed_outline
-from pluto_bt.maps.world import Shape, World
+from pluto_bt.commands.options import Parser
+from pluto_bt.source import Faults
 
 if TYPE_CHECKING:
-    from pluto_bt.runner import Runner
+    from pluto_bt.commands.map_picture import Driven
+    from pluto_bt.maps.world import World
+    from pluto_bt.record.box import Box
 
-INK, WALL, PATH, GOAL, CONTACT, ACTOR = "#22262e", "#4a5361", "#1f6feb", "#2da44e", "#d1242f", "#bf8700"
-AREA_COLOURS = {"named": "#8250df", "map": "#57606a", "forbidden": "#d1242f", "restrictive": "#bf8700", "one-way": "#0969da", "sector": "#57606a"}
-OUTLINES = 24  # outlines of the robot drawn along the path
-
-
-def draw(path: str, runner: Runner) -> None:
-    """Draw a finished run. Uses matplotlib without pyplot, which would cost a second and keep global state."""
-    from matplotlib.figure import Figure
-
-    world, result = runner.inputs.world, runner.result
-    x_min, y_min, x_max, y_max = _frame(world, runner)
-    width_m, height_m = x_max - x_min, y_max - y_min
-    scale = 10.0 / max(width_m, height_m, 1e-6)
-    figure = Figure(figsize=(max(4.0, width_m * scale + 1.0), max(3.5, height_m * scale + 1.7)), dpi=120, layout="constrained")
-    axes = figure.add_subplot()
-    _draw_world(axes, world)
-    _draw_track(axes, runner)
-    for number, contact in enumerate(result.contacts):
-        axes.plot(contact["x_m"], contact["y_m"], "x", color=CONTACT, markersize=10, markeredgewidth=2.5, zorder=6, label="" if number else "contact")
-    axes.set(xlim=(x_min, x_max), ylim=(y_min, y_max), aspect="equal", xlabel="x (m)", ylabel="y (m)")
-    figure.legend(loc="outside lower left", ncols=6, frameon=False, fontsize=8, labelcolor=INK)
-    reason = f" ({result.reason})" if result.reason else ""
-    axes.set_title(f"{result.mission} in {result.world}: {result.result}{reason}, {result.distance_m:.1f} m in {result.sim_time_s:.1f} s, "
-                   f"collisions {result.collisions}", fontsize=10, color=INK)  # fmt: skip
-    for side in ("top", "right"):
-        axes.spines[side].set_visible(False)
-    figure.savefig(path)
+ENDINGS = (".png", ".svg")
 
 
-def _frame(world: World, runner: Runner) -> tuple[float, float, float, float]:
-    """What the picture shows: the world, and the path if it leaves it, with a margin."""
-    x_min, y_min, x_max, y_max = world.bounds_m()
-    track = np.array([point.pose[:2] for point in runner.system.track.points] or [(x_min, y_min)])
-    low = np.minimum([x_min, y_min], track.min(axis=0))
-    high = np.maximum([x_max, y_max], track.max(axis=0))
-    margin = 0.03 * float(np.max(high - low)) + 0.3
-    return (float(low[0]) - margin, float(low[1]) - margin, float(high[0]) + margin, float(high[1]) + margin)
+def main(argv: list[str]) -> int:
+    """Draw path, speeds, verdicts and leaves."""
+    parser = Parser(prog="pluto plot", description="Draw a recorded run: its path, its speeds, what held the robot, which leaves worked.")
+    parser.add_argument("file", metavar="FILE.mcap|FILE.log", help="a black box, or a log of CARMEN")
+    parser.add_argument("--output", metavar="FILE.png|svg", help="where to (default: FILE.png, beside the recording)")
+    parser.add_argument("--world", metavar="W", help="draw it into this world or map, not into the one of the recording")
+    args = parser.parse_args(argv)
+    from pluto_bt.commands.boxes import read_box
+    from pluto_bt.commands.outputs import check_file
+
+    output = args.output or str(Path(args.file).with_suffix(ENDINGS[0]))
+    faults = Faults()
+    check_file(output, "--output", ENDINGS, faults)
+    faults.raise_errors()
+    box = read_box(args.file, needs_ticks=False)
+    world, driven = seen_from_above(box, args.world)
+    from pluto_bt.commands.box_picture import draw_box
+
+    draw_box(output, box, world, driven)
+    print(output)
+    return 0
 
 
-def _draw_world(axes: Any, world: World) -> None:
-    if world.grid is not None:
-        grid = world.grid
-        rows, columns = grid.occupied.shape
-        x, y, theta = grid.origin
-        from matplotlib.transforms import Affine2D
+def seen_from_above(box: Box, asked: str | None) -> tuple[World, Driven]:
+    """The world, and what was driven in it. Raises: InputError for a world that cannot be read."""
+    import numpy as np
 
-        shade = np.where(grid.occupied > 0, 0.25, np.where(grid.unknown > 0, 0.9, 1.0))
-        image = axes.imshow(shade, cmap="gray", vmin=0, vmax=1, origin="lower", interpolation="nearest",
-                            extent=(0, columns * grid.resolution_m, 0, rows * grid.resolution_m))  # fmt: skip
-        image.set_transform(Affine2D().rotate(theta).translate(x, y) + axes.transData)
-    for terrain in world.terrains:
-        axes.fill(*terrain.points.T, color="#9a6700", alpha=0.12, linewidth=0)
-    for area in world.areas:
-        axes.fill(*area.points.T, facecolor=AREA_COLOURS[area.kind], alpha=0.07, linewidth=0)
-        axes.plot(*np.vstack([area.points, area.points[:1]]).T, "--", color=AREA_COLOURS[area.kind], linewidth=0.8)
-    for shape in world.shapes:
-        _draw_shape(axes, shape)
-    for line in world.lines:
-        axes.plot(*line.points.T, ":", color=AREA_COLOURS[line.kind], linewidth=1.5)
-    for actor in world.actors:
-        way = np.vstack([actor.waypoints, actor.waypoints[:1]]) if actor.loop else actor.waypoints
-        axes.plot(*way.T, ":", color=ACTOR, linewidth=1)
-        axes.add_patch(_circle(actor.waypoints[0], actor.radius_m, ACTOR))
-    if world.actors:
-        axes.plot([], [], "o", color=ACTOR, markersize=7, label="who walks, at the start")
-    for goal in world.goals:
-        axes.plot(goal.x_m, goal.y_m, "o", color=GOAL, markersize=5)
-        axes.annotate(goal.id, (goal.x_m, goal.y_m), textcoords="offset points", xytext=(5, 5), fontsize=7, color=GOAL)
-    for marker in world.markers:
-        axes.plot(marker.x_m, marker.y_m, "s", color="#8c959f", markersize=3)
+    from pluto_bt.commands.map_picture import Driven
+    from pluto_bt.record.curves import goals_of, seen_of, track_of
+    from pluto_bt.record.entries import WATCHED
+
+    world, outline = _surroundings(box, asked)
+    result, run = box.result, box.run
+    reason = f" ({result['reason']})" if result.get("reason") else ""
+    where = f" in {world.name}" if world.name else ""
+    end = "" if run.mode == WATCHED else f": {result.get('result') or 'its end is not known'}{reason}"
+    contacts = [(contact["x_m"], contact["y_m"]) for contact in result.get("contacts", ())]
+    seen_m = np.zeros((0, 2)) if world.files else seen_of(box)
+    title = f"{Path(run.mission).name or 'recorded'}{where}{end}"
+    return world, Driven(title, track_of(box), np.array(outline).reshape(-1, 2), goals_of(box), contacts, seen_m)
 
 
-def _draw_shape(axes: Any, shape: Shape) -> None:
-    style = {"linestyle": "--", "alpha": 0.4} if shape.absent else {}
-    if shape.kind == "wall":
-        axes.plot(*shape.points.T, color=WALL, linewidth=1.6, solid_capstyle="round", **style)
-    elif shape.kind == "circle":
-        axes.add_patch(_circle(shape.points[0], shape.radius_m, WALL))
-    else:
-        fill = "white" if shape.kind == "hole" else WALL
-        fill = "none" if shape.absent else fill
-        axes.fill(*shape.points.T, facecolor=fill, edgecolor=WALL, linewidth=1, hatch="///" if shape.kind == "hole" else None, **style)
+def _surroundings(box: Box, asked: str | None) -> tuple[World, list[tuple[float, float]]]:
+    """The world and the robot's outline, from the files in the box."""
+    from pluto_bt.commands.files import find_file
+    from pluto_bt.maps.load import load_world
+    from pluto_bt.maps.world import World
+    from pluto_bt.modules.robot_file import load_robot_file
 
-
-def _circle(centre: Any, radius_m: float, colour: str) -> Any:
-    from matplotlib.patches import Circle
-
-    return Circle((float(centre[0]), float(centre[1])), radius_m, facecolor=colour, edgecolor=colour, alpha=0.8)
-
-
-def _draw_track(axes: Any, runner: Runner) -> None:
-    points = runner.system.track.points
-    if not points:
-        return
-    track = np.array([point.pose for point in points])
-    axes.plot(track[:, 0], track[:, 1], color=PATH, linewidth=1.8, zorder=4, label="path")
-    outline = np.array(runner.inputs.robot.body.outline_m)
-    for index in np.unique(np.linspace(0, len(track) - 1, OUTLINES).astype(int)):
-        corners = placed_outline(outline, tuple(track[index]))
-        is_end = index in (0, len(track) - 1)
-        axes.plot(*np.vstack([corners, corners[:1]]).T, color=PATH, linewidth=1.2 if is_end else 0.5, alpha=1.0 if is_end else 0.35, zorder=4)
-    axes.plot(*track[0, :2], "o", color=PATH, markersize=7, markerfacecolor="white", zorder=5, label="start")
-    axes.plot(*track[-1, :2], "o", color=PATH, markersize=7, zorder=5, label="end")
-    for number, (x, y) in enumerate(runner.goals()):
-        axes.plot(x, y, "*", color=GOAL, markersize=13, zorder=5, label="" if number else "goals")
+    with box.unpacked() as folder:
+        platform = folder / "platform.toml"
+        outline = list(load_robot_file(str(platform), box.run.settings).body.outline_m) if platform.is_file() else []
+        if asked is None:
+            return (load_world(folder / box.run.world, box.run.world) if box.run.world else World("")), outline
+    faults = Faults()
+    path = find_file("world", asked, faults)
+    faults.raise_errors()
+    assert path is not None  # else there was a fault
+    return load_world(path, asked), outline

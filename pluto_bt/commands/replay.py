@@ -57,12 +57,12 @@ def main(argv: list[str]) -> int:
 
 def show(box: Box, number: int) -> int:
     """One tick."""
-    from pluto_bt.record.view import moment
+    from pluto_bt.commands.moment import moment
 
     if number < 0:
         print("no tick was recorded", file=sys.stderr)
         return 1
-    print("\n".join(moment(box, box.now(number))))
+    print(moment(box, number))
     return 0
 
 

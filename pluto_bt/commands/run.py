@@ -100,8 +100,8 @@ def _run(args: argparse.Namespace) -> RunResult:
         result = runner.run()
     progress.end(result)
     if args.plot:
-        from pluto_bt.commands.plot import draw
+        from pluto_bt.commands.map_picture import draw_run
 
-        draw(args.plot, runner)
+        draw_run(args.plot, runner)
         progress.line(f"picture: {args.plot}")
     return result

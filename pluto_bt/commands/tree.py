@@ -41,10 +41,12 @@ def main(argv: list[str]) -> int:
 
 
 def _parser() -> Parser:
+    from pluto_bt.commands.tree_now import form_of_terminal
+
     parser = Parser(prog="pluto tree", description="Show a mission's tree. The format xml opens in Groot2.")
     parser.add_argument("mission", metavar="MISSION.xml|FILE.mcap", nargs="?", help="a black box shows the tree with its statuses")
     parser.add_argument("--tree", metavar="ID", help="the tree to show, if not the main one")
-    parser.add_argument("--format", choices=FORMATS, default=_format_of_terminal())
+    parser.add_argument("--format", choices=FORMATS, default=form_of_terminal())
     parser.add_argument("--at", metavar="T", help="of a black box: at this time of the run (s); without it the last moment at work")
     parser.add_argument("--gateway", metavar="HOST:PORT", help="in place of a file: the tree of this robot, now")
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes may be used")
@@ -86,7 +88,3 @@ def _of_run(args: argparse.Namespace) -> Drawn | None:
     number = last_at_work(box) if at_s is None else box.number_at(at_s)
     return of_box(box, number) if number >= 0 else None
 
-
-def _format_of_terminal() -> str:
-    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
-    return "unicode" if encoding.lower().startswith("utf") else "ascii"

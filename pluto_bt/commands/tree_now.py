@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,12 @@ from pluto_bt.trees.loader.registry import is_port_name, node_types
 if TYPE_CHECKING:
     from pluto_bt.record.box import Box, Now, TreeNow
     from pluto_bt.system import System
+
+
+def form_of_terminal() -> str:
+    """How trees are drawn where the output goes: `unicode` where it can show that, else `ascii`."""
+    encoding = getattr(sys.stdout, "encoding", None) or "ascii"
+    return "unicode" if encoding.lower().startswith("utf") else "ascii"
 
 
 def of_system(system: System) -> Drawn | None:

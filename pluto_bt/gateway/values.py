@@ -13,13 +13,13 @@ from pluto_bt.blackboard.messages import FVectorState, LaserScan, Message
 from pluto_bt.gateway.xml_text import Attribute, element, escape, numbers, scalar
 from pluto_bt.runtime.parameters import unit_of
 
-_WIRE_NAMES: dict[type[Message], dict[str, str]] = {LaserScan: {"angle_min_rad": "angle_min", "angle_step_rad": "angle_step", "ranges_m": "ranges"}}
-_ROW_NAMES = {"nodes": "node", "modules": "module"}
+WIRE_NAMES: dict[type[Message], dict[str, str]] = {LaserScan: {"angle_min_rad": "angle_min", "angle_step_rad": "angle_step", "ranges_m": "ranges"}}
+ROW_NAMES = {"nodes": "node", "modules": "module"}
 
 
 def body_of(value: Message) -> str:
     """The children of `<value>` for any message."""
-    names = _WIRE_NAMES.get(type(value), {})
+    names = WIRE_NAMES.get(type(value), {})
     fields = [(names.get(name, name), getattr(value, name)) for name in value.__struct_fields__ if name != "stamp_s"]
     if isinstance(value, LaserScan):
         fields = [field for field in fields if field[0] in ("angle_min", "angle_step", "ranges")]
@@ -38,7 +38,7 @@ def value_line(topic: str, seq: int, stamp_s: float, age_s: float, body: str, *,
 
 def fields_of(kind: type[Message]) -> tuple[dict[str, str], ...]:
     """Name on the wire, type and unit of every field, for `describe`."""
-    names = _WIRE_NAMES.get(kind, {}) | _ROW_NAMES
+    names = WIRE_NAMES.get(kind, {}) | ROW_NAMES
     hints = get_type_hints(kind)
     fields = [name for name in kind.__struct_fields__ if name != "stamp_s"]
     told = [name for name in fields if not (kind is LaserScan and name == "count")]
@@ -48,9 +48,11 @@ def fields_of(kind: type[Message]) -> tuple[dict[str, str], ...]:
 def _field(name: str, value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"<{name}>{numbers(value.tolist())}</{name}>"
+    if isinstance(value, bytes):
+        return f"<{name}>{base64.b64encode(value).decode()}</{name}>"
     if isinstance(value, tuple):
-        if name in _ROW_NAMES:
-            return "".join(_row(_ROW_NAMES[name], item) for item in value)
+        if name in ROW_NAMES:
+            return "".join(_row(ROW_NAMES[name], item) for item in value)
         return f"<{name}>{numbers(value)}</{name}>"
     if isinstance(value, bytes):
         return f"<{name}>{base64.b64encode(value).decode()}</{name}>"

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from estimation.motion_check import MotionCheck
 from estimation.news import LOST, WHEELS_GRIP
 from estimation.track import Tilt
@@ -13,6 +11,7 @@ from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import Arm
 from pluto_bt.skills.reasons import NO_POSE
+from pluto_bt.skills.scan_watch import are_same
 
 LEVEL_RAD = math.radians(2.0)  # a scan from a wrist or a robot that leans more also sees the ground
 FINE = (1.0, 0.0, True, False, False)
@@ -80,4 +79,4 @@ class MotionCheckShown:
 def _has_equal_half(before: FloatArray, now: FloatArray) -> bool:
     """True if the beams of one side are exactly those of the scan before."""
     half = len(now) // 2
-    return len(before) == len(now) and (np.array_equal(before[:half], now[:half]) or np.array_equal(before[half:], now[half:]))
+    return len(before) == len(now) and (are_same(before[:half], now[:half]) or are_same(before[half:], now[half:]))

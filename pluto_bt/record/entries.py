@@ -8,6 +8,7 @@ import msgspec
 
 RUN, TREE, TICK = "pluto/run", "pluto/tree", "pluto/tick"
 STATUS_OF_LETTER = {"I": "IDLE", "R": "RUNNING", "S": "SUCCESS", "F": "FAILURE", "K": "SKIPPED"}
+WATCHED = "watched"  # the mode of a recording made from outside: topics, but no ticks
 KEYFRAME_EVERY = 100  # ticks: every so often a tick says all and not only what changed
 
 
@@ -16,7 +17,7 @@ class Run(msgspec.Struct, kw_only=True):
 
     Attributes:
         hashes: SHA-256 of each attachment, and `parameters`: of the platform file with all settings.
-        mode: lockstep or threads.
+        mode: lockstep or threads; watched if it was recorded from outside.
         resumed: what the mission remembered of a run that was cut off.
         settings: of `--set`; `ports`, `tree`, `plugins`, `start`, `seed` as given.
     """

@@ -33,9 +33,10 @@ class Line(NamedTuple):
 
 @dataclass
 class McapFile:
-    """What a file holds besides its messages, and how far it can be read."""
+    """What a file holds besides its messages, and how far it can be read; `shown` is what the user calls it."""
 
     path: Path
+    shown: str = ""
     is_whole: bool = False
     schemas: dict[int, Schema] = field(default_factory=dict)
     channels: dict[int, Channel] = field(default_factory=dict)
@@ -98,4 +99,4 @@ def open_mcap(path: Path, shown: str, faults: Faults) -> McapFile | None:
         faults.error(Place(shown), "not-mcap", f'"{shown}" is no MCAP file', expected="a black box (.mcap), as `pluto run --record` writes it",
                      found=repr(start[:8])[2:-1] or "an empty file")  # fmt: skip
         return None
-    return McapFile(path)
+    return McapFile(path, shown)

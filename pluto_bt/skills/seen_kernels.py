@@ -88,10 +88,27 @@ def put(
 
 
 @kernel
+def place_cones(axes: Array, leaves_m: Array, heard_m: Array, rounds: int, x_m: float, y_m: float, theta_rad: float, cones: Array) -> None:
+    """The cones of a round as `hear_cones` takes them, for the robot at (x, y, theta).
+
+    Args:
+        axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
+        heard_m: (ROUNDS, k) the last rounds, the newest one last, 0 = deaf. rounds: how many there have been; with fewer nothing clears.
+    """
+    c, s, newest = math.cos(theta_rad), math.sin(theta_rad), heard_m.shape[0] - 1
+    for k in range(axes.shape[0]):
+        cones[k, 0], cones[k, 1] = x_m + c * axes[k, 0] - s * axes[k, 1], y_m + s * axes[k, 0] + c * axes[k, 1]
+        cones[k, 2], cones[k, 3], cones[k, 5] = axes[k, 2] + theta_rad, max(heard_m[newest, k], leaves_m[k]), leaves_m[k]
+        cones[k, 4] = heard_m[newest, k] if rounds > newest else 0.0
+        for r in range(newest):
+            cones[k, 4] = min(cones[k, 4], heard_m[r, k])
+
+
+@kernel
 def hear_cones(
     seen: Array, heard: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float,
     stamp_s: float, most_m: float, fleeting_s: float,
-) -> None:  # fmt: skip
+) -> int:  # fmt: skip
     """Take a round of the sonar ring.
 
     Args:
@@ -100,15 +117,16 @@ def hear_cones(
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
     where it was free a moment ago came by itself and may go by itself: it counts as so much older, `fleeting_s`, from the start.
+    Returns: how many cones are marked.
     """
-    opening = math.tan(half_cone_rad)
+    opening, touching = math.tan(half_cone_rad), 0
     for clears in (1, 0):
         for k in range(cones.shape[0]):
             x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
             if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
                 continue
             if clears == 0 and echo_m <= cones[k, 5]:
-                cones[k, 3] = TOUCHING_M
+                cones[k, 3], touching = TOUCHING_M, touching + 1
                 continue
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
@@ -127,6 +145,7 @@ def hear_cones(
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
                         put_s = stamp_s - fleeting_s if heard[row, column] > stamp_s - LATELY_S else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
+    return touching
 
 
 @inline_kernel
@@ -143,7 +162,6 @@ def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: flo
     """Whether the laser knows of something in the cone about as near as the echo."""
     x_m, y_m, reach_m, opening = cones[k, 0], cones[k, 1], cones[k, 3] + 2.0 * CONE_SLACK_M, math.tan(half_cone_rad)
     c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
-    found = False
     column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, stamps.shape[2])
     row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, stamps.shape[1])
     for row in range(row_0, row_1):
@@ -152,8 +170,8 @@ def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: flo
                 dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
                 ahead_m, aside_m = c * dx + s * dy, abs(c * dy - s * dx)
                 if dx * dx + dy * dy < reach_m * reach_m and aside_m < ahead_m * opening + CELL_M:
-                    found = True
-    return found
+                    return True
+    return False
 
 
 @kernel

@@ -14,6 +14,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.obstacles import Obstacles
 from pluto_bt.skills.outline import Array, Outline, Planar
+from pluto_bt.skills.scan_watch import are_same
 from pluto_bt.skills.sonar import SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -121,7 +122,7 @@ class Sight:
 
     def _is_frozen(self, ranges: Array, robot: Planar) -> bool:
         at = self._changed_at
-        if at is None or self._scan is None or not np.array_equal(ranges, self._scan.ranges_m):
+        if at is None or self._scan is None or not are_same(ranges, self._scan.ranges_m):
             self._changed_at = robot
             return False
         is_open = self.laser is not None and float(np.nanmin(ranges)) >= self.laser.max_range_m  # an empty field always looks the same

@@ -46,10 +46,12 @@ class WalkerWatch:
             return
         ranges = scan.ranges_m
         near: Mask = (ranges > 0.0) & (ranges < REACH_M) & (believed != 0.0)
-        bearing = laser[2] + scan.angle_min_rad + scan.angle_step_rad * np.flatnonzero(near)
-        points = np.column_stack((laser[0] + ranges[near] * np.cos(bearing), laser[1] + ranges[near] * np.sin(bearing)))
+        beams = near.nonzero()[0]
+        range_m, bearing_rad = ranges[beams], laser[2] + scan.angle_min_rad + scan.angle_step_rad * beams
+        points = np.zeros((len(beams), 2))
+        points[:, 0], points[:, 1] = laser[0] + range_m * np.cos(bearing_rad), laser[1] + range_m * np.sin(bearing_rad)
         moved = came_closer(ranges, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
-        self._movers.velocities(points, np.flatnonzero(near), moved, scan.stamp_s)
+        self._movers.velocities(points, beams, moved, scan.stamp_s)
         self._meet(_apart([Walker(x, y, vx, vy, 0.0, scan.stamp_s, walked_s) for x, y, vx, vy, walked_s in self._movers.walkers.tolist()]))
         self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
 
@@ -68,6 +70,8 @@ class WalkerWatch:
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
         rows = self.rows(now_s)
+        if not len(rows):
+            return NO_BODY
         seen = rows[rows[:, IN_VIEW] == 1.0]
         return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
 
@@ -112,3 +116,4 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, COLUMNS))
+NO_BODY: Array = np.zeros((0, 3))

@@ -120,6 +120,10 @@ def search(
                 a, b = i + di, j + dj
                 if (di == 0 and dj == 0) or not (0 <= a < rows and 0 <= b < columns) or evidence[a, b] > 0:
                     continue
+                to = a * columns + b
+                step = 1.0 if di == 0 or dj == 0 else 1.41421356
+                if cost[to] <= cost[at] + step:
+                    continue  # known as near already as any step from here could bring it
                 free = clearance[a, b]
                 if free < least or rectangle[BASE] > 0.0:
                     from_end = min(math.hypot(a - start[0], b - start[1]), math.hypot(a - goal[0], b - goal[1]) if goal_reach >= 0.0 else 1e9)
@@ -130,8 +134,7 @@ def search(
                 factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
                 if free < half:
                     factor += NARROW * (half - max(free, least)) / (half - least) + (TIGHT if free < least else 0.0)
-                new = cost[at] + factor * (1.0 if di == 0 or dj == 0 else 1.41421356)
-                to = a * columns + b
+                new = cost[at] + factor * step
                 if new < cost[to] - 1e-4:
                     cost[to], came[to] = new, at
                     ahead = greed * max(0.0, math.hypot(goal[0] - a, goal[1] - b) - goal_reach) if goal_reach >= 0.0 else 0.0

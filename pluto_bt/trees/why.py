@@ -18,7 +18,6 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.reasons import CHAIN_REASONS
 
 LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
-LINK_OF_MODULE: Final = {"motion": "motion", "avoid": "avoidance", "drive": "drive", "filter": "filter"}
 CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
 BASE_TOPICS: Final = ("ATRV2/Bumper", "ATRV2/Sonar", "ATRV2/Battery")

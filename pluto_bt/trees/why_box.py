@@ -27,7 +27,7 @@ def view_of(box: Box, now: Now) -> View:
 
 
 def _at_work(tree: TreeNow) -> list[NodeAtWork]:
-    """The running leaves, deepest last told first; of a tree that failed, the leaf that failed."""
+    """The running leaves, depth first."""
     rows = list(tree.rows())
     found = []
     for i, (row, status, feedback, since_ns) in enumerate(rows):

@@ -61,6 +61,11 @@ def mutated(draw: st.DrawFn) -> str:
             to = draw(st.integers(0, len(text)))
             text = text[:at] + text[at + length :]
             text = text[:to] + piece + text[to:]
+    return as_document(text)
+
+
+def as_document(text: str) -> str:
+    """A text that does not begin with `<` would be the name of a file."""
     return text if text.lstrip("\ufeff \t\r\n").startswith("<") else f"<{text}"
 
 

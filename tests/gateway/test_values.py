@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any, get_type_hints
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from pluto_bt.blackboard import messages as m
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway import replies, wire
 from pluto_bt.gateway.describe import describe
+from pluto_bt.gateway.read_values import message_of
 from pluto_bt.gateway.requests import Describe
 from pluto_bt.gateway.values import body_of, fields_of, value_line
 from pluto_bt.modules.catalogue import catalogue
@@ -65,6 +67,34 @@ def test_every_topic_crosses_the_wire_and_validates(topic: Any) -> None:
     tags = {tag for tag, _ in children(value)} - {"status"}
     described = {field["name"] for field in fields_of(topic.type)}
     assert tags <= described and set(get_type_hints(topic.type)) >= {"stamp_s"}
+
+
+FILLED: list[m.Message] = [
+    m.ActuatorState(1.5, 32, (3.0, -4.5), (0.5, 0.0), (0.1, 0.2), (1.0, 2.0)),
+    m.FVectorState(1.5, (0.2, 1e-9, 3.0), (0, -1, -2, 11), "stuck", "a <b> & c"),
+    m.LaserPose(1.5, (1.0, 2.0, 0.25, -3.0, 0.1, 0.2, 0.3, -0.4), tuple(map(float, range(9))), 2),
+    m.LaserScan(1.5, -1.5, 0.5, m.read_only([1.25, -1.0, np.inf]), 3),
+    m.ImuState(1.5, 1.0, bias_known=True, turn_rates_radps=(0.1, 0.2, 0.3)),
+    m.LocalMapState(1.5, 1.0, 2.0, 0.25, 2, 3, bytes([0, 1, 2, 3, 60, 38]), 0.5),
+    m.TreeState(1.5, 7, (m.NodeState("a/b", "GoTo", "b", 2, "RUNNING", "2 m left", 1.25), m.NodeState("c", "Say", "c", 2, "IDLE", "", 0.0))),
+    m.ModulesState(1.5, (m.ModuleState("base", "io", "running", 5, 1, 0, 0.25, "back again"),)),
+    m.WorldState(1.5, (1.0, 2.0, 3.0), (0.5, 0.1), 0.25, 1, 2),
+]
+
+
+@pytest.mark.parametrize("value", FILLED, ids=lambda value: type(value).__name__)
+def test_a_message_is_read_back_as_it_was(value: m.Message) -> None:
+    line = value_line("t", 1, value.stamp_s, 0.0, body_of(value))
+    assert message_of(type(value), ElementTree.fromstring(line)) == value
+    empty = ElementTree.fromstring(value_line("t", 1, value.stamp_s, 0.0, ""))
+    if not isinstance(value, m.LaserScan):
+        assert message_of(type(value), empty) == type(value)(stamp_s=1.5)
+
+
+@pytest.mark.parametrize("broken", ["<value><voltage_v>much</voltage_v></value>", '<value stamp="now"/>'])
+def test_a_value_that_is_none_is_refused(broken: str) -> None:
+    with pytest.raises(ValueError):
+        message_of(m.BatteryState, ElementTree.fromstring(broken))
 
 
 EVERY_REPLY: list[replies.AnyReply] = [

@@ -6,9 +6,13 @@ import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import msgspec
 import pytest
 
+from pluto_bt.blackboard.messages import Message
+from pluto_bt.cli import main
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.commands.record import record
 from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.gateway.why import ask, lines
 from pluto_bt.playback import replay_file
@@ -49,6 +53,31 @@ def live(tmp_path: Path) -> Iterator[Live]:
     robot = Live(make_runner(inputs, realtime=True, gateway="127.0.0.1:0", record=tmp_path / "a.mcap"))
     yield robot
     robot.end()
+
+
+def test_who_listens_from_outside_has_what_the_robot_said(live: Live, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The recording of a listener and the robot's own tell the same values of the same topics."""
+    live.wait_until(lambda: ask(live.client)[0])
+    address = live.runner.system.part("gateway").component.address  # type: ignore[union-attr]
+    assert record(tmp_path / "heard.mcap", f"{address.host}:{address.port}", ["motion/*", "Localization/Pose"], 1.5) == 0
+    live.end()
+    heard, own = (open_box(tmp_path / name, name, Faults()) for name in ("heard.mcap", "a.mcap"))
+    assert heard is not None and own is not None and heard.run.mode == "watched"
+    names = ("motion/status", "Localization/Pose")
+    told = {name: {sample.seq: sample.value for sample in samples} for name, samples in own.samples(names).items()}
+    for name, samples in heard.samples(names).items():
+        both = [(sample.value, told[name][sample.seq]) for sample in samples if sample.seq in told[name]]
+        assert len(both) >= 10 and all(a.stamp_s == pytest.approx(b.stamp_s, abs=1e-6) for a, b in both)
+        assert all(replaced(a) == replaced(b) for a, b in both)
+    for command in ("info", "plot"):
+        assert main([command, str(tmp_path / "heard.mcap")]) == 0
+    assert main(["replay", str(tmp_path / "heard.mcap")]) == 2
+    assert "no ticks of a tree" in capsys.readouterr().err
+
+
+def replaced(message: Message) -> Message:
+    """The same, but for the stamp, which goes over the wire in microseconds."""
+    return msgspec.structs.replace(message, stamp_s=0.0)
 
 
 def test_why_is_answered_while_people_interfere_and_the_box_repeats_it_all(live: Live, tmp_path: Path) -> None:

@@ -144,6 +144,27 @@ def test_a_write_counts_even_if_the_value_is_equal(body: str, ticks: list[str]) 
     assert seen == ticks
 
 
+def test_the_child_of_an_update_watcher_is_left_as_it_ended() -> None:
+    """Nobody makes it IDLE again: its pre-conditions are asked once, and a Sleep that has passed does not wait anew."""
+    bench = Bench('<SkipUnlessUpdated entry="{x}">a:S(_skipIf="asked += 1; false")</SkipUnlessUpdated>', blackboard={"asked": 0, "x": 0})
+    for _ in range(3):
+        bench.mission.blackboard["x"] = 1
+        assert bench.tick() == "aS → S"
+    assert bench.mission.blackboard["asked"] == 1
+    bench = Bench('<Sequence><WaitValueUpdate entry="{x}"><Sleep msec="100"/></WaitValueUpdate>a:S</Sequence>', blackboard={"x": 0})
+    assert bench.run("→ R; +100; aS → S") == "→ R; +100; aS → S"
+    bench.mission.blackboard["x"] = 1
+    assert bench.tick() == "aS → S"
+
+
+def test_an_update_watcher_that_is_interrupted_halts_its_child() -> None:
+    bench = Bench('<ReactiveSequence><ScriptCondition code="go"/><SkipUnlessUpdated entry="{x}">a:R</SkipUnlessUpdated></ReactiveSequence>',
+                  blackboard={"go": True, "x": 0})  # fmt: skip
+    assert bench.tick() == "aR → R"
+    bench.mission.blackboard["go"] = False
+    assert bench.tick() == "a! → F"
+
+
 def test_retry_reads_its_port_again_after_each_failure() -> None:
     body = '<RetryUntilSuccessful num_attempts="{n}"><Sequence><Script code="n = 2; tries += 1"/>a:F</Sequence></RetryUntilSuccessful>'
     bench = Bench(body, blackboard={"n": 5, "tries": 0})

@@ -131,6 +131,7 @@ def test_the_palette_has_the_librarys_leaves_and_not_the_built_in_nodes() -> Non
     palette = etree.fromstring(nodes_xml().encode())
     names = [element.get("ID") for element in palette[0]]
     assert "GoTo" in names and "Sequence" not in names
+    assert not {"ErrorCondition", "GoalCondition"} & set(names), "what nodes have in common is no node"
 
 
 def test_formats_are_those_of_the_command_line() -> None:

@@ -55,7 +55,7 @@ def test_every_built_in_node_in_every_form(name: str, form: str) -> None:
     assert ends(load_mission(text)) == ends(load_mission(written(name, "compact")))
 
 
-NAMES = ["Küche 2", "a-b_c", "日本", "x" * 200, "Ünï", "with blank", "1st"]
+NAMES = ["ROOT", "Küche 2", "a-b_c", "日本", "x" * 200, "Ünï", "with blank", "1st"]
 
 
 @pytest.mark.parametrize("name", NAMES)

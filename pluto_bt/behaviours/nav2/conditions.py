@@ -44,7 +44,7 @@ class Nav2Condition(Leaf):
         return pose_of(self.robot) if self.robot is not None else None
 
 
-class GoalCondition(Nav2Condition):
+class GoalCondition(Nav2Condition, register=False):
     """What GoalUpdated and GlobalUpdatedGoal have in common."""
 
     INPUT_PORTS = dict(GOALS)
@@ -263,7 +263,7 @@ class IsWithinPathTrackingBounds(Nav2Condition):
         return self.answer(is_near, f"{left_m:+.2f} m, {math.degrees(turned_rad):.0f} deg")
 
 
-class ErrorCondition(Nav2Condition):
+class ErrorCondition(Nav2Condition, register=False):
     """SUCCESS if an error number is one of those that this condition is about."""
 
     HELPED: ClassVar[tuple[int, ...]] = ()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from pluto_bt.trees.engine.node import DecoratorNode, reset
+from pluto_bt.trees.engine.node import DecoratorNode
 from pluto_bt.trees.engine.status import RUNNING, SKIPPED, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.scopes import Scope
@@ -27,7 +27,11 @@ class UpdateWatch:
 
 
 class EntryUpdated(DecoratorNode):
-    """A child that is RUNNING is continued without looking."""
+    """A child that is RUNNING is continued without looking.
+
+    A child that has ended is left as it ended, as BehaviorTree.CPP 4.10 leaves it (`EntryUpdatedDecorator::tick`): nobody makes it IDLE again, so
+    its pre-conditions are asked once, and a Sleep that has passed does not wait anew.
+    """
 
     PORTS: ClassVar = {"entry": PortModel("entry", at_load=True, description="the entry to watch")}
     OTHERWISE: ClassVar[Result] = SKIPPED
@@ -50,7 +54,6 @@ class EntryUpdated(DecoratorNode):
         if result is RUNNING:
             self.status = RUNNING
             return RUNNING
-        reset(self.child)
         self.status = result
         return result
 

@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import cache
 from typing import Any
+
+from py_trees import ports
 
 from pluto_bt.trees.board_view import BoardView
 from pluto_bt.trees.decorators.subtree import SubTree
@@ -23,6 +27,20 @@ from pluto_bt.trees.script import ScriptRunner
 from pluto_bt.trees.tracked import Tracked
 
 
+@contextmanager
+def _classes_looked_at_once() -> Iterator[None]:
+    """py_trees looks at every attribute of a class whenever one is made of it, four fifths of its time; inside, it looks once a class."""
+    look = ports._ports_class_is_abstract
+    if hasattr(look, "cache_info"):  # another mission is being built
+        yield
+        return
+    ports._ports_class_is_abstract = cache(look)
+    try:
+        yield
+    finally:
+        ports._ports_class_is_abstract = look
+
+
 class Construction:
     """Builds one mission."""
 
@@ -32,7 +50,8 @@ class Construction:
 
     def run(self, plan: Plan) -> Any:
         """The root node; `tracked` then holds every node, depth first."""
-        root = self._make(plan, None)
+        with _classes_looked_at_once():
+            root = self._make(plan, None)
         if not self._report.stops_loading:
             self._set_up()
             remember_steady_parts(self.tracked, plan.scope.board, self._context)

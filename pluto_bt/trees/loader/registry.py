@@ -53,8 +53,8 @@ def name_problem(name: str) -> str:
     """Why `name` cannot be the ID of a tree or a node type, or ""."""
     if not name:
         return "it is empty"
-    if name.lower() == "root":
-        return "'root' is reserved"
+    if name in ("Root", "root"):
+        return f"'{name}' is reserved"
     found = _FORBIDDEN.search(name)
     return f"character {found[0]!r} is not allowed" if found else ""
 
