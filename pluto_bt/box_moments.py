@@ -24,7 +24,7 @@ from pluto_bt.trees.why import explain
 from pluto_bt.trees.why_box import view_of
 
 EVENTS_SHOWN = 60
-TRACK_STEP_M = 0.05
+TRACK_STEP_M, TRACK_STEP_RAD = 0.05, 0.05
 FROM_TICKS = ("tree", "events", "mission/state")
 """Topics that the ticks tell better than their own samples, or that are told apart."""
 
@@ -63,8 +63,9 @@ class Moments:
         stale_after_s = {topic.name: topic.stale_after_s + robot.record.thinned_period_s if topic.stale_after_s else 0.0 for topic in TOPICS}
         times_s = [time_ns / 1e9 for time_ns in box.times_ns] or [0.0]
         return scenery(
-            world, robot, name, mode="box", box=shown, start_s=times_s[0], end_s=times_s[-1], stale_after_s=stale_after_s, track=self._track()
-        )
+            world, robot, name, mode="box", box=shown, start_s=times_s[0], end_s=times_s[-1], stale_after_s=stale_after_s,
+            track=self._track(), marks=self._marks(),
+        )  # fmt: skip
 
     def _newest(self, topic: str, t_s: float) -> tuple[Message, Line] | None:
         lines = self._samples.get(topic, [])
@@ -106,13 +107,19 @@ class Moments:
                 yield encode(LogLine(event=event, seq=line.sequence))
 
     def _track(self) -> list[Any]:
-        """[x, y, t] along the way, thinned."""
-        track: list[tuple[float, float, float]] = []
+        """[x, y, t, theta] along the way, thinned."""
+        track: list[tuple[float, float, float, float]] = []
         for number in range(len(self._box)):
             tick = self._box.tick(number)
-            if tick.pose is not None and (not track or math.dist(track[-1][:2], tick.pose[:2]) >= TRACK_STEP_M):
-                track.append((round(tick.pose[0], 3), round(tick.pose[1], 3), tick.t_s))
+            if tick.pose is not None and (not track or _is_step(track[-1], tick.pose)):
+                x_m, y_m, theta_rad = tick.pose
+                track.append((round(x_m, 3), round(y_m, 3), tick.t_s, round(theta_rad, 3)))
         return track
+
+    def _marks(self) -> list[Any]:
+        """[t, level, text] of the warnings and errors, for the slider."""
+        events = [decode(line.data, Event) for line in self._samples.get("events", ())]
+        return [(event.stamp_s, event.level, event.text) for event in events if isinstance(event, Event) and event.level != "info"]
 
 
 def _of_ticks(box: Box, now: Now, t_s: float) -> list[bytes]:
@@ -130,6 +137,10 @@ def _of_ticks(box: Box, now: Now, t_s: float) -> list[bytes]:
         told = MissionState(now.tick.t_s, mission.tree.name, mission.tree.run, state, now.paused or mission.reason)
         lines.append(_value("mission/state", told, now.number, age_s))
     return lines
+
+
+def _is_step(last: tuple[float, float, float, float], pose: tuple[float, float, float]) -> bool:
+    return math.dist(last[:2], pose[:2]) >= TRACK_STEP_M or abs(math.remainder(pose[2] - last[3], math.tau)) >= TRACK_STEP_RAD
 
 
 def _value(topic: str, value: Message, seq: int, age_s: float) -> bytes:

@@ -13,6 +13,7 @@ from typing import IO, Any
 
 import pytest
 
+from pluto_bt.commands.files import package_root
 from pluto_bt.scenario import Play
 from tests.gateway.browsers import Screen, chromium
 
@@ -86,7 +87,10 @@ def test_a_robot_is_watched_stopped_sent_elsewhere_and_let_go_on(browser: Any) -
 
 
 def test_a_recording_is_looked_through_with_a_slider(browser: Any, scenario: Play, tmp_path: Path) -> None:
-    run = scenario("yard.xml", mission="patrol.xml", ports={"goals": "5,3.5;2,3.5"}, record=tmp_path / "a.mcap")
+    yard = (package_root() / "sim" / "worlds" / "yard.xml").read_text(encoding="utf-8")
+    fault = '<script><at t="7"><fault device="laser" kind="fatal" for="3"/></at></script></world>'
+    (tmp_path / "yard.xml").write_text(yard.replace("</world>", fault), encoding="utf-8")
+    run = scenario(str(tmp_path / "yard.xml"), mission="patrol.xml", ports={"goals": "5,3.5;2,3.5"}, record=tmp_path / "a.mcap")
     assert run.result == "SUCCESS"
     with console_of(browser, "replay", str(tmp_path / "a.mcap"), "--web", "127.0.0.1:0") as screen:
         screen.waits_for("#pose-x", "2.0")
@@ -104,6 +108,10 @@ def test_a_recording_is_looked_through_with_a_slider(browser: Any, scenario: Pla
         screen.waits_for("#clock", "0:03.1")
         screen.page.keyboard.press("Space")
         screen.page.wait_for_function("() => document.querySelector('#time').value > 3.5")
+        went_wrong = [event for event in run.events if event.level != "info"]
+        assert screen.page.locator("#marks button").count() == len(went_wrong) > 0
+        screen.click("#marks button:first-child")
+        screen.waits_for("#causes", "fatal error")
         screen.page.keyboard.press("End")
         screen.waits_for("#mission-chip", "succeeded")
         screen.click("#tab-events")

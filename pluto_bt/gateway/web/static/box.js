@@ -1,14 +1,15 @@
 // A black box instead of a robot: the same page asks what was true at a time, and the slider says at which.
 
-import { byId, clock, say, show } from "./dom.js";
+import { byId, clock, make, say, show } from "./dom.js";
 import { attributes, elements, value } from "./wire.js";
 
 const STEP_MS = 100, STEP_S = 0.1;
 
 export class Box {
-  constructor(store, { start_s, end_s }) {
+  constructor(store, { start_s, end_s, track, marks }) {
     Object.assign(this, { store, start_s, end_s, at_s: start_s, isPlaying: false, isAsking: false, isUp: true, listeners: new Map(), wanted_s: start_s });
-    store.frozen_s = start_s;
+    Object.assign(store, { frozen_s: start_s, track });
+    this.showMarks(marks);
     const slider = byId("time");
     Object.assign(slider, { min: start_s, max: end_s, step: 0.05, value: start_s });
     slider.oninput = () => this.seek(Number(slider.value));
@@ -26,6 +27,16 @@ export class Box {
 
   tell(tag, message) {
     for (const listener of this.listeners.get(tag) ?? []) listener(message);
+  }
+
+  /** Warnings and errors above the slider; a click leads there. */
+  showMarks(marks) {
+    byId("marks").replaceChildren(...marks.map(([t_s, level, text]) => {
+      const mark = make("button", { type: "button", title: `${clock(t_s)} ${text}`, "data-level": level, "aria-label": `${level} at ${clock(t_s)}: ${text}` });
+      mark.style.left = `${100 * (t_s - this.start_s) / Math.max(this.end_s - this.start_s, 1e-9)}%`;
+      mark.onclick = () => this.seek(t_s);
+      return mark;
+    }));
   }
 
   key(event) {

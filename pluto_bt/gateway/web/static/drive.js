@@ -4,15 +4,16 @@ import { byId, say, toast } from "./dom.js";
 import { isTyping } from "./halt.js";
 
 const SEND_MS = 100;
-const VELOCITY_BOTH = 30; // cmdFlags 10 * A + T: laser and sonar watch, T = 0 velocity
-const VELOCITY_SONAR = 10;
+const SONAR = 1, LASER = 2; // cmdFlags 10 * A + T: A = who watches, T = 0 velocity
 const PER_S = 1.2; // of full deflection: how fast the command follows the stick
 const KEYS = { ArrowUp: [1, 0], ArrowDown: [-1, 0], ArrowLeft: [0, 1], ArrowRight: [0, -1] };
 
 export class Drive {
   constructor(link, store, lease, orders, robot) {
     Object.assign(this, { link, store, lease, orders, robot, isArmed: false, wish: [0, 0], told: [0, 0], isHeld: false, pressed: new Set() });
-    this.flags = robot.laser_max_m === null ? VELOCITY_SONAR : VELOCITY_BOTH;
+    const watch = (robot.sonars.length ? SONAR : 0) | (robot.laser_max_m === null ? 0 : LASER);
+    this.flags = 10 * watch;
+    this.watchers = ["Nobody watches", "Sonar watches", "Laser watches", "Laser and sonar watch"][watch];
     byId("drive-arm").onclick = () => (this.isArmed ? this.disarm() : this.arm());
     byId("top-speed").oninput = () => this.showTop();
     for (const button of byId("turns").children) {
@@ -64,7 +65,7 @@ export class Drive {
     say(button, this.isArmed ? "Let go of the wheel" : "Take the wheel");
     button.classList.toggle("primary", !this.isArmed);
     byId("stick").classList.toggle("armed", this.isArmed);
-    say(byId("drive-note"), this.isArmed ? "Drag the stick or hold the arrow keys. Letting go stops; laser and sonar watch." : "Takes the lease and pauses a running mission.");
+    say(byId("drive-note"), this.isArmed ? `Drag the stick or hold the arrow keys. Letting go stops. ${this.watchers}.` : "Takes the lease and pauses a running mission.");
   }
 
   top() {

@@ -9,6 +9,7 @@ import { View } from "./view.js";
 const LAYERS = { laser: "Laser", sonar: "Sonar", trail: "Trail", plan: "Path, goal", names: "Names" };
 const DRAWN = ["Localization/Pose", "sick/scan", "ATRV2/Sonar", "ATRV2/Bumper", "map/path", "motion/rectangle", "map/local", "motion/command", "avoidance/command", "world/state"];
 
+const BELOW_PX = 42, BELOW_BOX_PX = 112; // legend; player and legend
 const NEWS_MS = 100; // what the robot says is drawn so often at most; who moves the map sees every frame
 
 export class MapView {
@@ -18,7 +19,8 @@ export class MapView {
     this.still = document.createElement("canvas"); // what stands still, drawn anew only when the view changes
     this.layers = Object.fromEntries(Object.keys(LAYERS).map((name) => [name, true]));
     this.trail = new Trail(scenery.track);
-    this.view = new View(canvas, () => { this.isDirty = true; }, (x_m, y_m) => chosen(...this.snapped(x_m, y_m)));
+    this.view = new View(canvas, () => { this.isDirty = true; }, (x_m, y_m) => chosen(...this.snapped(x_m, y_m)),
+      scenery.mode === "box" ? BELOW_BOX_PX : BELOW_PX);
     for (const topic of DRAWN) store.on(topic, () => { this.hasNews = true; });
     store.on("Localization/Pose", ({ fields, stamp_s }) => this.trail.add(fields.pose, stamp_s));
     this.view.resize();

@@ -15,6 +15,12 @@ export function poseOf(store) {
   return pose ? [pose[0], pose[1], pose[3]] : null;
 }
 
+/** The pose at which a value was true: a recording knows the way and has few samples, a live robot has only one pose. */
+export function poseWhen(store, value) {
+  const found = store.track?.findLast((point) => point[2] <= value.stamp_s);
+  return found ? [found[0], found[1], found[3]] : poseOf(store);
+}
+
 /** From a point in a frame to the map. */
 export function placed([x, y, theta], px, py) {
   const c = Math.cos(theta), s = Math.sin(theta);

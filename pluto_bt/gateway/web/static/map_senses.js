@@ -1,7 +1,7 @@
 // What the robot senses: laser, sonars, and what a job has seen and covered. What is too old to trust is drawn grey.
 
 import { CELLS, ECHO, LASER, OLD, SEEN } from "./colours.js";
-import { placed, poseOf } from "./map_robot.js";
+import { placed, poseWhen } from "./map_robot.js";
 import { list } from "./wire.js";
 
 const FARTHEST_M = 40; // of free ground that is drawn
@@ -33,7 +33,7 @@ export function drawLaser(context, view, store, robot) {
 }
 
 export function drawSonar(context, view, store, robot) {
-  const ranges = list(store.fields("ATRV2/Sonar")?.ranges_m), pose = poseOf(store);
+  const value = store.get("ATRV2/Sonar"), ranges = list(value?.fields.ranges_m), pose = value ? poseWhen(store, value) : null;
   if (!pose) return;
   view.inMetres(context);
   context.strokeStyle = store.isStale("ATRV2/Sonar") ? OLD : ECHO;

@@ -1,13 +1,13 @@
 // Where the map is looked at from: metres to pixels and back, panning, zooming, following. y goes up.
 
 const NEAREST = 400, FARTHEST = 2, FOLLOWED = 50; // pixels a metre
-const ABOVE_PX = 54, BELOW_PX = 42; // taken by figures and buttons
+const ABOVE_PX = 54; // taken by figures and buttons
 const TAP_PX = 8, TAP_MS = 600;
 
 export class View {
-  /** `changed` is called when something must be drawn anew, `tapped(x_m, y_m)` for a tap. */
-  constructor(canvas, changed, tapped) {
-    Object.assign(this, { canvas, changed, tapped, x_m: 0, y_m: 0, scale: 40, width: 1, height: 1, isFollowing: false, cursor: null });
+  /** `changed` is called when something must be drawn anew, `tapped(x_m, y_m)` for a tap; `below_px` of the canvas are covered at its foot. */
+  constructor(canvas, changed, tapped, below_px) {
+    Object.assign(this, { canvas, changed, tapped, below_px, x_m: 0, y_m: 0, scale: 40, width: 1, height: 1, isFollowing: false, cursor: null });
     this.pointers = new Map();
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("pointerdown", (event) => this.down(event));
@@ -51,9 +51,9 @@ export class View {
     const [x0, y0, x1, y1] = box;
     this.box = box;
     this.x_m = (x0 + x1) / 2;
-    const free_px = Math.max(this.height - ABOVE_PX - BELOW_PX, 60);
+    const free_px = Math.max(this.height - ABOVE_PX - this.below_px, 60);
     this.scale = clamp(0.94 * Math.min(this.width / Math.max(x1 - x0, 1), free_px / Math.max(y1 - y0, 1)));
-    this.y_m = (y0 + y1) / 2 + (ABOVE_PX - BELOW_PX) / 2 / this.scale;
+    this.y_m = (y0 + y1) / 2 + (ABOVE_PX - this.below_px) / 2 / this.scale;
     this.changed();
   }
 
