@@ -15,7 +15,7 @@ from pluto_bt.gateway.replies import AnyReply, Item
 from pluto_bt.gateway.requests import AnyRequest
 
 TYPES: dict[str, type[Message]] = {topic.name: topic.type for topic in TOPICS}
-FRAME_LIMIT = 16 * 1024 * 1024
+FRAME_LIMIT = 64 * 1024 * 1024
 _HEAD_BYTES = 4
 
 

@@ -16,6 +16,7 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import Goal, OccupancyGrid, Points, World
 
 GRID = "grid.png"
+MOST_CELLS = 4096
 PALETTE = ((0, 0, 0, 0), (142, 156, 171, 255), (58, 66, 76, 150))
 """Red, green, blue and opacity of what is free, occupied, unknown, on the console's dark ground."""
 
@@ -30,8 +31,20 @@ def scenery(world: World, platform: Platform, robot: str, **more: Any) -> Scener
     }
     if world.grid is None:
         return Scenery(msgspec.json.encode(shown))
-    shown["grid"] = _frame(world.grid)
-    return Scenery(msgspec.json.encode(shown), {GRID: picture(world.grid)})
+    grid = coarse(world.grid)
+    shown["grid"] = _frame(grid)
+    return Scenery(msgspec.json.encode(shown), {GRID: picture(grid)})
+
+
+def coarse(grid: OccupancyGrid, most_cells: int = MOST_CELLS) -> OccupancyGrid:
+    """The grid with at most so many cells a side, as browsers can draw it. A cell is occupied if a part of it is, unknown if all of it is."""
+    n = -(-max(grid.occupied.shape) // most_cells)
+    if n <= 1:
+        return grid
+    rows, columns = (np.arange(0, size, n) for size in grid.occupied.shape)
+    occupied = np.maximum.reduceat(np.maximum.reduceat(grid.occupied, rows, axis=0), columns, axis=1)
+    unknown = np.minimum.reduceat(np.minimum.reduceat(grid.unknown, rows, axis=0), columns, axis=1)
+    return OccupancyGrid(occupied, unknown, n * grid.resolution_m, grid.origin)
 
 
 def picture(grid: OccupancyGrid) -> bytes:
