@@ -241,6 +241,17 @@ def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Sc
     screen.page.wait_for_selector("#no-link", state="hidden")
 
 
+def test_a_robot_that_ends_says_so_before(browser: Any) -> None:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")))
+    one.pump()
+    screen = Screen(browser, one.url)
+    screen.waits_for("#link", "ms")
+    one.end()
+    screen.waits_for("#no-link", "No link", "the robot's software ends")
+    screen.close()
+
+
 def test_what_is_too_old_is_told_with_its_age(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.waits_for("#pose-age", "old")

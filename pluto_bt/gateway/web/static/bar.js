@@ -69,7 +69,7 @@ export class Bar {
     say(element, link.isUp ? `● ${link.roundTrip_ms === null ? "…" : `${Math.max(1, link.roundTrip_ms).toFixed(0)} ms`}` : "▲ no link");
     byId("gauge-link").dataset.state = link.isUp ? "up" : "none";
     show(byId("no-link"), !link.isUp);
-    if (!link.isUp) say(byId("no-link"), `No link for ${age((performance.now() - link.lost_ms) / 1000)}. What you see is old.`);
+    if (!link.isUp) say(byId("no-link"), `No link for ${age((performance.now() - link.lost_ms) / 1000)}${link.farewell ? ` (${link.farewell})` : ""}. What you see is old.`);
   }
 }
 

@@ -18,7 +18,7 @@ export class Refused extends Error {
 export class Link {
   /** `wishes`: [topic, max_rate_hz, on_change]; values go to `store`, other messages to listeners by tag. */
   constructor(store, wishes, name) {
-    Object.assign(this, { store, wishes, name, token: "", isUp: false, roundTrip_ms: null, heard_ms: 0, lost_ms: performance.now() });
+    Object.assign(this, { store, wishes, name, token: "", isUp: false, roundTrip_ms: null, heard_ms: 0, lost_ms: performance.now(), farewell: "" });
     this.listeners = new Map();
     this.waiting = new Map();
     this.tries = 0;
@@ -54,6 +54,7 @@ export class Link {
       return;
     }
     this.isUp = true;
+    this.farewell = "";
     this.tries = 0;
     for (const [topic, rate_hz, onChange] of this.wishes) {
       this.ask("subscribe", { topic, max_rate_hz: rate_hz, on_change: Boolean(onChange) }).catch(() => {});
@@ -76,6 +77,7 @@ export class Link {
 
   answer(tag, element) {
     const message = attributes(element);
+    if (tag === "error" && message.fatal === "true") this.farewell = message.text; // the connection closes behind it
     const id = element.getAttribute("id");
     const asked = this.waiting.get(id);
     if (asked && tag !== "progress" && tag !== "result" && tag !== "event") {
