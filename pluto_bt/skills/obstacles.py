@@ -23,7 +23,10 @@ FORETELL_S = 1.0  # what moves is thought to go on for so long after it was seen
 
 
 class Obstacles:
-    """The memory. Points leave it when the laser looks where they were, when they are old, and when they are far."""
+    """The memory. Points leave it when the laser looks where they were, when they are old, and when they are far.
+
+    Attributes: `first_echo`: from this number on, the points given last by `around` were heard and not seen.
+    """
 
     def __init__(self, parameters: AvoidParameters) -> None:
         self.parameters = parameters
@@ -36,6 +39,7 @@ class Obstacles:
         self._seen = np.zeros((0, 6))  # the newest scan
         self._kept = np.zeros((0, 6))  # what left the field of view
         self._echoes = np.zeros((0, 6))  # what the sonar heard and the laser does not say better
+        self.first_echo = 0
         self._movers = Movers()
         self._last_ranges_m: Array | None = None
         self._last_pose: Planar = (0.0, 0.0, 0.0)
@@ -85,12 +89,13 @@ class Obstacles:
 
     def around(self, robot: Planar, with_laser: bool, with_sonar: bool, now_s: float, beyond_m: float = 0.0) -> Array:
         """(n, 5) x, y, margin, velocity x, y in the robot frame, of all that is remembered nearer than the reach and `beyond_m`."""
-        parts = [self._seen, self._kept] if with_laser else []
-        if with_sonar:
-            parts.append(self._echoes)
-        if not parts:
-            return np.zeros((0, 5))
-        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], now_s, self.reach_m + beyond_m)
+        reach_m = self.reach_m + beyond_m
+        seen = np.concatenate((self._seen, self._kept)) if with_laser else self._echoes[:0]
+        points = _seen_from(seen, robot[0], robot[1], robot[2], now_s, reach_m)
+        self.first_echo = len(points)
+        if not with_sonar or not len(self._echoes):
+            return points
+        return np.concatenate((points, _seen_from(self._echoes, robot[0], robot[1], robot[2], now_s, reach_m)))
 
     def _has_moved(self, ranges: Array, near: Mask, count: int, laser: Planar, scan: LaserScan) -> Mask:
         """Which of the near points stand where the scan before looked through: somebody walked there."""

@@ -48,6 +48,8 @@ class ScanWatch:
             self._fault = ALL_WELL
         elif self._fault == ALL_WELL:
             self._fault = _bad("scans come too seldom")
+        elif self._fault.code is LinkStatus.LASER_FATAL:
+            self._fault = _bad("scans come again; two in time are asked for")
         return True
 
     def verdict(self, now_s: float) -> Verdict:

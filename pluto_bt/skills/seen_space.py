@@ -14,7 +14,7 @@ from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.lone_beams import believed_ends
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, hear_cones, place_cones, put, see_beams, stand
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, Counts, hear_cones, place_cones, put, see_beams, stand
 
 ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
 MOST_POINTS = 4000
@@ -35,7 +35,7 @@ class SeenSpace:
         n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
         self._outline, self._hear_m, self._reach_m, self._fleeting_s = outline, hear_m, reach_m, fleeting_s
         self.seen: Array = np.full((n, n), NEVER)
-        self._heard: Array = np.full((n, n), NEVER)
+        self._heard: Array = np.full((2, n, n), NEVER)
         self.stamps: Array = np.full((2, n, n), NEVER)
         self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
@@ -97,11 +97,12 @@ class SeenSpace:
         for (px, py), stamp_s in zip(points.tolist(), stamps_s.tolist(), strict=True):
             put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], stamp_s)
 
-    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> None:
+    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> Counts:
         """Take a round of the ring.
 
         Args:
             axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
+        Returns: (k,) CAME, SUDDEN or 0: what is new about each echo.
         """
         if len(ranges_m) != self._rounds_m.shape[1]:
             self._rounds_m, self._cones = np.zeros((ROUNDS, len(ranges_m))), np.zeros((len(ranges_m), 6))
@@ -112,11 +113,14 @@ class SeenSpace:
         self._place(axes, leaves_m, self._rounds_m, self._rounds, *robot, cones)
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
         half_cone_rad = math.radians(sonar.cone_deg) / 2.0
+        news = np.zeros(len(cones), dtype=np.intp)
         self._touching = NOWHERE
-        if self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s):
+        space = (self.seen, self._heard, self.stamps, self.spots)
+        if self._hear(*space, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s, news):
             touching = cones[:, ECHO] == TOUCHING_M
             x, y, theta = axes[touching].T
             self._touching = np.column_stack((x + leaves_m[touching] * np.cos(theta), y + leaves_m[touching] * np.sin(theta)))
+        return news
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
@@ -142,7 +146,8 @@ class SeenSpace:
         corner = (at[0] - half, at[1] - half)
         moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
         self._corner, self._middle = corner, at
-        self.seen, self._heard = _shifted(self.seen, *moved), _shifted(self._heard, *moved)
+        self.seen = _shifted(self.seen, *moved)
+        self._heard = np.stack([_shifted(layer, *moved) for layer in self._heard])
         self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
         self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
 

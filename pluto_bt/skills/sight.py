@@ -100,6 +100,10 @@ class Sight:
         """(n, 5) x, y, margin, velocity x, y in the robot frame of what is known around the robot."""
         return self._obstacles.around(robot, with_laser and self.laser is not None, with_sonar and self.ring is not None, now_s)
 
+    def is_echo(self, which: int) -> bool:
+        """True if that one of the `points` given last was heard and not seen."""
+        return which >= self._obstacles.first_echo
+
     def sees_behind(self, with_sonar: bool) -> bool:
         """True if something watches while the robot backs."""
         return with_sonar and self.ring is not None and self.ring.hears_behind

@@ -156,7 +156,7 @@ class StopFilter:
         self, eyes: FilterEyes, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict
     ) -> tuple[Twist, Verdict]:
         """The largest share of a twist whose stopping path is free."""
-        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.walkers.rows(now_s), self.parameters
+        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.people(now_s), self.parameters
 
         def trouble_at(share: float) -> tuple[int, int, float]:
             return self._first_trouble(

@@ -37,6 +37,7 @@ class WalkerWatch:
         self._movers = Movers()
         self._scans: list[tuple[LaserScan, Planar]] = []
         self._walkers: list[Walker] = []
+        self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
         """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
@@ -61,11 +62,19 @@ class WalkerWatch:
         seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
+    def doubt(self, stamp_s: float) -> None:
+        """Something was heard that may be somebody, until it proves to stand."""
+        self._doubted_s = stamp_s
+
     def rows(self, now_s: float) -> Array:
         """(n, COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
         return np.array(sure) if sure else NOBODY
+
+    def is_anybody_about(self, now_s: float) -> bool:
+        """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
+        return now_s - self._doubted_s < IN_VIEW_S or len(self.rows(now_s)) > 0
 
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
@@ -116,4 +125,5 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, COLUMNS))
+ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, 0.0]])  # somebody out of view, nobody knows where
 NO_BODY: Array = np.zeros((0, 3))
