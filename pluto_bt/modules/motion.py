@@ -96,7 +96,8 @@ class Motion:
         rectangle = self._skill.rectangle
         if rectangle is not self._shown:
             self._shown = rectangle
-            self._rectangle.put(RectangleState(now_s) if rectangle is None else RectangleState(now_s, *rectangle), now_s)
+            sides = () if rectangle is None else (rectangle.base_m, rectangle.height_m, rectangle.home)
+            self._rectangle.put(RectangleState(now_s, *sides), now_s)
 
     def _order(self) -> None:
         is_ordered, job = self._skill.order()
