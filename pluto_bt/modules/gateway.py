@@ -30,7 +30,7 @@ class Gateway:
         """The link with its ports taken; None if there is nothing to listen on."""
         options = self._options
         audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
-        link = GatewayLink(port, address, options.gateway_access, audit=audit, console=self._console)
+        link = GatewayLink(port, address, options.gateway_access, options.robot.gateway, audit, self._console)
         try:
             link.listen()
         except InputError as error:
@@ -49,6 +49,11 @@ class Gateway:
     def console_address(self) -> Address | None:
         """Where the web console is served, None if it is not."""
         return None if self._link is None else self._link.console_address
+
+    @property
+    def pid(self) -> int | None:
+        """The gateway's process, None while there is none."""
+        return None if self._link is None else self._link.pid
 
     def start(self, now_s: float) -> None:
         """Spawn the process and tell the addresses."""
@@ -77,8 +82,9 @@ class Gateway:
 
     def _tell(self, link: GatewayLink) -> None:
         """What operators should know of the process."""
-        if link.restarts != self._restarts:
-            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
-        elif link.is_lost and not self._is_lost:
+        is_back = link.restarts != self._restarts
+        if (link.is_lost or is_back) and not self._is_lost:
             self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended; it is started again")
+        if is_back:
+            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
         self._restarts, self._is_lost = link.restarts, link.is_lost
