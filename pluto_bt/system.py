@@ -95,6 +95,7 @@ class Options:
     gateway: Address | None = None
     gateway_access: Access | None = None
     gateway_audit: Path | None = None
+    web: Address | None = None
     groot: Address | None = None
     ssh: SshRequest | None = None
     record: RecordRequest | None = None
@@ -102,6 +103,11 @@ class Options:
     load: Callable[..., Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
+
+    @property
+    def takes_orders(self) -> bool:
+        """True if people or programs can command while it runs."""
+        return self.has_gateway or self.web is not None
 
 
 class System:
@@ -122,7 +128,7 @@ class System:
         self.latch = SafetyLatch()
         self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        asked = {"gateway": options.has_gateway, "recorder": options.record is not None, "groot": options.groot is not None, "ssh": options.ssh is not None, "arm": options.robot.devices.arm is not None}
+        asked = {"gateway": options.takes_orders, "recorder": options.record is not None, "groot": options.groot is not None, "ssh": options.ssh is not None, "arm": options.robot.devices.arm is not None}
         has = {*self.simulator.devices, *(name for name, is_asked in asked.items() if is_asked)}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()

@@ -85,6 +85,28 @@ def check_gateway(address: str | None, access: Access, faults: Faults) -> None:
         faults.extend(error.faults)
 
 
+def web_address(text: str) -> Address:
+    """`--web HOST:PORT`. Raises: InputError."""
+    from pluto_bt.gateway.listen import WEB_PORT, parse_address
+
+    return parse_address(text, "--web", WEB_PORT)
+
+
+def check_web(text: str | None, faults: Faults, access: Access | None = None) -> None:
+    """The address of the web console, whether it can be had, and whether its library is there."""
+    if text is None:
+        return
+    if find_spec("aiohttp") is None:
+        what, mend = "the library aiohttp is not installed", "pip install 'pluto_bt[web]'"
+        faults.error(Place("--web"), "not-installed", what, expected="aiohttp", mend=mend)
+    from pluto_bt.gateway.listen import open_listener
+
+    try:
+        open_listener(web_address(text), access, "--web").close()
+    except InputError as error:
+        faults.extend(error.faults)
+
+
 def groot_address(text: str) -> Address:
     """`--groot [HOST:]PORT`, on the loopback: 127.0.0.1 without a host, 1667 without a port. Raises: InputError."""
     from pluto_bt.gateway.listen import Address, parse_address
