@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
 
 Mask = NDArray[np.bool_]
 Beams = NDArray[np.intp]
 CAME_CLOSER_M = 0.12  # a beam so much shorter than the scan before allows ends on something that moved there
+GRAZING_M = 1.5  # neighbouring beams that differ by less may graze one wall, which goes on beyond its end by as much till the next beam
 APART_M = 0.3  # neighbouring beams that differ more end on different things
 WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its visible part shifts as we pass
 MOVED_BEAMS = 2  # so many beams must end in former free space
@@ -100,6 +101,8 @@ def came_closer(
 ) -> Mask:
     """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in five beams side by side.
 
+    What is grazed is not seen up to its end, which may lie anywhere before the next beam: so far it is thought to go on.
+
     Args:
         ranges, before: (n,) this scan and the one before, of equal angles; NaN in `before` says nothing.
         laser, last: where they were taken from, in one frame.
@@ -119,5 +122,13 @@ def came_closer(
         if j < 2 or j > before.shape[0] - 3:
             continue
         free_m = min(before[j - 2], before[j - 1], before[j], before[j + 1], before[j + 2])
+        free_m = min(free_m, beyond_m(before[j], before[j + 1]), beyond_m(before[j], before[j - 1]))
+        free_m = min(free_m, beyond_m(before[j + 1], before[j + 2]), beyond_m(before[j - 1], before[j - 2]))
         moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
     return moved
+
+
+@inline_kernel
+def beyond_m(end_m: float, next_m: float) -> float:
+    """Where the beam beyond the last one on a grazed wall, `end_m`, would meet it; the one before the last ended at `next_m`."""
+    return 2.0 * end_m - next_m if next_m - end_m < GRAZING_M else end_m
