@@ -18,6 +18,7 @@ SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
 TURNING_M = 0.06
+GRAZING = 8.0  # a wall that a cone's edge grazes comes nearer by so much more than the end of the cone sweeps: at seven degrees
 FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
 LONGEST_S = 0.7  # older rounds do not belong to the same approach
 
@@ -81,11 +82,12 @@ def walked(heard_m: Array, places: Array, axes: Array, near: Mask, half_cone_rad
             step_m = heard_m[r - 1, k] - heard_m[r, k] - nearer_m if comes else heard_m[r, k] - heard_m[r - 1, k] - FARTHER * way_m
             total_m, most_m, moved_m = total_m + step_m, max(most_m, step_m), moved_m + way_m
         sweeps_m = min(last_m, HEAR_M) * swept_rad
+        least_m = NEARER_M + GRAZING * sweeps_m
         if moved_m + sweeps_m < STANDING_M:
             gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
-            found[k] = gap_m > NEARER_M
+            found[k] = gap_m > least_m
         else:
-            is_even = total_m > NEARER_M and most_m < EVENLY * total_m
+            is_even = total_m > least_m and most_m < EVENLY * total_m
             found[k] = is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M
     return found
 
