@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
-from pluto_bt.gateway.replies import Error, encode
+from pluto_bt.gateway.replies import Error
 
 _A_STOP = re.compile(rb"<(e?stop)[\s/>]")
 _LONGEST_STOP = len(b"<estop")
