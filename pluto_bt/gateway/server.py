@@ -11,12 +11,12 @@ from collections.abc import Iterable, Sized
 from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
+from pluto_bt.gateway.listen import BACKLOG
 from pluto_bt.gateway.session import Session
 
 SLICE_BYTES = 4096
 """Bytes of one client that are read before the others have their turn."""
 TICK_S, TICKS_A_SWEEP = 0.05, 10
-BACKLOG = 1024
 HANDSHAKE_S = 3.0
 
 

@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 MISSION = """<root BTCPP_format="4"><BehaviorTree ID="m"><Sequence name="all of it">
-  <Sleep name="wait" msec="1500"/><Say name="greet" text="there"/><Sleep name="rest" msec="1500"/></Sequence></BehaviorTree></root>"""
+  <Sleep name="wait" msec="300000"/><Say name="greet" text="there"/><Sleep name="rest" msec="300000"/></Sequence></BehaviorTree></root>"""
+"""Five minutes of its own time are a second of ours at the least, so that either wait is drawn however busy the machine is, or idle."""
 LONG_S = 60.0
 
 
