@@ -122,6 +122,11 @@ def crowd(port: int, count: int, each: Callable[[socket.socket], None]) -> dict[
     return {"cuts": 0, "codes": [], "most_bytes": 0, "longest_s": 0.0}
 
 
+def one_more_byte(connection: socket.socket) -> None:
+    """Of a message that never ends."""
+    connection.send(b"<")
+
+
 def never_read(connection: socket.socket) -> None:
     """Ask for all there is, and read nothing."""
     connection.send(b'<subscribe topic="*"/><describe/><modules/><log/>' * 5)
@@ -145,7 +150,7 @@ def burn(port: int) -> dict[str, object]:
 
 
 CROWDS: dict[str, tuple[int, Callable[[socket.socket], None]]] = {
-    "slowloris": (40, lambda connection: connection.send(b"<") and None),
+    "slowloris": (40, one_more_byte),
     "half-open": (60, lambda connection: None),
     "200-connections": (200, lambda connection: None),
     "never-read": (8, never_read),

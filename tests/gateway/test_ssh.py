@@ -84,7 +84,7 @@ def door(lasting: Door) -> Door:
 
 
 def until(holds: Callable[[], bool], within_s: float = PATIENCE_S, told: Callable[[], str] = lambda: "") -> None:
-    """Wait; the seconds it took."""
+    """Wait until it does."""
     begun_s = wall_ns() / NS
     while not holds():
         assert wall_ns() / NS - begun_s < within_s, f"it did not come to pass: {told()}"
