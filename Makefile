@@ -32,9 +32,10 @@ fuzz: $(STAMP)   ## loader, scripts and formatter for about ten minutes, elsewhe
 
 fuzz-by-coverage: $(STAMP)  ## the same led by coverage (atheris), FUZZ_SECONDS each; what is learnt stays in out/fuzz
 	$(BIN)/pip install --quiet 'atheris>=3'
-	@mkdir -p out/fuzz/missions out/fuzz/scripts
+	@mkdir -p out/fuzz/missions out/fuzz/scripts out/fuzz/protocol
 	$(BIN)/python -m tests.fuzz.by_coverage missions out/fuzz/missions -max_total_time=$(FUZZ_SECONDS)
 	$(BIN)/python -m tests.fuzz.by_coverage scripts out/fuzz/scripts -max_total_time=$(FUZZ_SECONDS)
+	$(BIN)/python -m tests.fuzz.by_coverage protocol out/fuzz/protocol -max_total_time=$(FUZZ_SECONDS) -rss_limit_mb=1024
 
 FUZZ_SECONDS ?= 30
 

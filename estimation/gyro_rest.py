@@ -38,9 +38,11 @@ class GyroRest:
         if is_still and self._still_s >= self.SETTLE_S:
             self._hold(rate_radps, turn_rad)
             turn_rad = 0.0
-        elif not is_still:
+        elif not is_still and (self._taken or self._doubted_rad):
             self._judge()
             self._owed_rad, self._doubted_rad = self._owed_rad + self._doubted_rad, 0.0
+        if not self._owed_rad:
+            return turn_rad
         pay_rad = math.copysign(min(abs(self._owed_rad), self.PAY_RADPS * dt_s), self._owed_rad)
         self._owed_rad -= pay_rad
         return turn_rad + pay_rad

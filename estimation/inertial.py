@@ -10,23 +10,10 @@ import math
 Triple = tuple[float, float, float]
 
 
-class LowPass:
-    """First-order low-pass of three channels. Its delay, for signals slower than 1/tau, is `tau_s`."""
-
-    __slots__ = ("_last", "tau_s")
-
-    def __init__(self, tau_s: float) -> None:
-        self.tau_s = tau_s
-        self._last: Triple | None = None
-
-    def step(self, values: Triple, dt_s: float) -> Triple:
-        """The filtered values after `dt_s` more seconds; the first values pass as they are."""
-        last = self._last
-        if last is not None and self.tau_s > 0.0:
-            a = dt_s / (self.tau_s + dt_s)
-            values = (last[0] + a * (values[0] - last[0]), last[1] + a * (values[1] - last[1]), last[2] + a * (values[2] - last[2]))
-        self._last = values
-        return values
+def low_pass(last: Triple, values: Triple, share: float) -> Triple:
+    """First-order low-pass of three channels: `last` moved towards `values` by `share`, which is dt / (tau + dt)."""
+    x, y, z = last
+    return x + share * (values[0] - x), y + share * (values[1] - y), z + share * (values[2] - z)
 
 
 def theta_rate(rates_radps: Triple, phi_rad: float, psi_rad: float) -> float:
@@ -46,18 +33,22 @@ class InertialHeading:
     __slots__ = ("_accelerations", "_last_s", "_rates", "delay_s", "theta_rad")
 
     def __init__(self, tau_s: float) -> None:
-        self._rates, self._accelerations = LowPass(tau_s), LowPass(tau_s)
+        self._rates = self._accelerations = (0.0, 0.0, 0.0)
         self._last_s: float | None = None
-        self.delay_s = tau_s
+        self.delay_s = tau_s  # of a first-order low-pass, for signals slower than 1 / tau
         self.theta_rad = 0.0
 
     def step(self, stamp_s: float, rates_radps: Triple, accelerations_mps2: Triple, phi_rad: float, psi_rad: float) -> tuple[Triple, Triple]:
-        """One sample, rates without bias. Returns filtered rates and accelerations; `theta_rad` has moved on.
+        """One sample, rates without bias. Returns filtered rates and accelerations, the first ones as they are; `theta_rad` has moved on.
 
         A sample that is not newer than the last one is filtered but turns nothing.
         """
-        dt_s = 0.0 if self._last_s is None else max(0.0, stamp_s - self._last_s)
-        self._last_s = stamp_s if self._last_s is None else max(self._last_s, stamp_s)
-        rates = self._rates.step(rates_radps, dt_s)
-        self.theta_rad += theta_rate(rates, phi_rad, psi_rad) * dt_s
-        return rates, self._accelerations.step(accelerations_mps2, dt_s)
+        last_s = self._last_s
+        dt_s = 0.0 if last_s is None else max(0.0, stamp_s - last_s)
+        if last_s is not None and self.delay_s > 0.0:
+            share = dt_s / (self.delay_s + dt_s)
+            rates_radps, accelerations_mps2 = low_pass(self._rates, rates_radps, share), low_pass(self._accelerations, accelerations_mps2, share)
+        self._last_s = stamp_s if last_s is None or stamp_s > last_s else last_s
+        self._rates, self._accelerations = rates_radps, accelerations_mps2
+        self.theta_rad += theta_rate(rates_radps, phi_rad, psi_rad) * dt_s
+        return rates_radps, accelerations_mps2

@@ -2,7 +2,8 @@
 
 The laser sees how the robot moved since a scan of a moment ago (`scan_match`), and that is compared with what localisation reckons with:
 the turn (`turn_trial`), the way (`way_trial`), and whether the scan fits at all. One that fits nowhere near, followed by one that fits to it,
-was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is.
+was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is. People who stand round it may hide
+so much that a scan looks like that too; so the place before is kept, and when it comes into view again, where it must be, nobody is lost.
 """
 
 from __future__ import annotations
@@ -13,10 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimation.news import LOST, News
+from estimation.home_scan import Home, KeyScan, difference
+from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep, match_scans
 from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
+from estimation.trim import OF_GYRO, OF_WHEELS, Trim
 from estimation.turn_trial import TurnTrial
 from estimation.way_trial import WayTrial
 
@@ -26,11 +29,12 @@ LEAST_BEAMS = 0.75  # of a scan must be numbers
 FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
 GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
-MOST_PAN_RAD = 0.3  # a laser that was panned farther sees too little of the same
+MOST_PAN_RAD = 1.6  # a laser that was panned farther sees too little of the same
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
+SEES_ALONG_M, LEAST_WAY_M = 0.008, 0.3  # along a bare street a laser sees no way; nothing is learned there, nor from less of a way
 KEY_WAY_M, KEY_TURN_RAD, KEY_S = 1.0, 0.5, 3.0  # a scan is compared with until the robot has moved on so far
 LONGEST_GAP_S = 60.0  # without usable scans: later the place may look different
 ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
@@ -42,14 +46,6 @@ class Limits(NamedTuple):
     speed_mps: float
     turn_radps: float
     max_range_m: float
-
-
-class KeyScan(NamedTuple):
-    """The scan that others are compared with; `arm`: the laser seen from the robot."""
-
-    at: Sums
-    ranges_m: Array
-    arm: Pose2
 
 
 class MotionCheck:
@@ -65,11 +61,13 @@ class MotionCheck:
         self._limits, self._asks_wheels, self._has_gyro, self._judges_turns = limits, wheels_know_turns, has_gyro, judges_turns
         self.news: list[News] = []
         self.turn, self.way = TurnTrial(self.news, wheels_know_turns), WayTrial(self.news)
+        self._gyro_trim, self._wheel_trim = Trim(OF_GYRO), Trim(OF_WHEELS)
         self._is_carried_off = False
         self.fits = 1.0
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
         self._is_elsewhere = False
+        self._home = Home()
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._since_s = -math.inf
@@ -87,8 +85,11 @@ class MotionCheck:
         """(way m, turn rad) to reckon with. `turn_rad` is the heading source's, `is_measured` if that is a sensor."""
         if is_measured and self.turn.trusts_gyro and abs(turn_rad) > FASTER * self._limits.turn_radps * dt_s + JITTER_RAD:
             self._refuse_gyro(f"the gyro says {turn_rad / dt_s:.3g} rad/s, more than this robot can turn")
+        way_m += self._wheel_trim.rate * way_m
         reckoned_m = way_m * self.way.grip
         reckoned_rad, is_measured = self.turn.reckoned(dt_s, wheel_turn_rad, turn_rad, is_measured)
+        if is_measured:
+            reckoned_rad += self._gyro_trim.rate * dt_s
         self._reckoning.add(stamp_s, dt_s, reckoned_m, reckoned_rad, (way_m, wheel_turn_rad), is_measured)
         if self._has_gyro and self._asks_wheels and (self._alone is None or stamp_s - self._alone.stamp_s >= ALONE_S):
             self._judge_without_laser(stamp_s)
@@ -97,6 +98,11 @@ class MotionCheck:
     def found(self) -> None:
         """Somebody has said where the robot is."""
         self._is_carried_off = self._is_elsewhere = False
+
+    def bias_moved(self, by_radps: float) -> None:
+        """The gyro's own bias was measured anew, higher by so much."""
+        self.turn.bias_moved(by_radps)
+        self._gyro_trim.moved(by_radps)
 
     def _refuse_gyro(self, why: str) -> None:
         self.turn.refuse(why)
@@ -125,23 +131,35 @@ class MotionCheck:
             self._renew(scan)
             return
         motion = motion_between(key.at, at)
-        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 2.0):
+        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 3.0):
             self._renew(scan)
             return
+        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
+            self.found()
+            self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
         match = self._best_match(key, scan, motion, first_rad, step_rad)
         self.fits = match.fits
         if match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
+            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not _is_odd(home):
+                self._is_elsewhere = False
             self._weigh(scan, key, motion, match)
             self._looked_s = stamp_s
             return
-        both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
-        is_odd = match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED) and not (_is_crowded(key) or _is_crowded(scan))
-        self._is_elsewhere = is_odd and not self._is_elsewhere
+        self._is_elsewhere = not self._is_elsewhere and _is_odd(match) and not (_is_crowded(key) or _is_crowded(scan))
+        if self._is_elsewhere and not self._is_carried_off:
+            self._home = Home(key)
         self._renew(scan)
 
     def blind(self) -> None:
         """A scan came that cannot be compared: the next one is compared with the one before."""
         self._is_elsewhere = False
+
+    def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
+        """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
+        home = self._home.key
+        if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
+            return None
+        return self._best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad)
 
     def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
         """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
@@ -167,11 +185,12 @@ class MotionCheck:
             self._renew(scan)
             return
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
-        off_m, aside_m, off_rad = _difference(motion.pose, seen)
+        off_m, aside_m, off_rad = difference(motion.pose, seen)
         off_rad -= self._counted_rad
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(stamp_s):
+                self._home = Home(key)
                 self._lose(f"the laser sees the robot moved by {math.hypot(off_m, aside_m):.1f} m as its wheels cannot move it")
                 self._renew(scan)
             return
@@ -182,8 +201,18 @@ class MotionCheck:
         if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
             return
         if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
-            self.turn.keep(stamp_s, off_rad, motion)
+            self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
             self._renew(scan)
+
+    def _trim(self, off_m: float, sigma_m: float, off_rad: float, sigma_rad: float, motion: Motion) -> None:
+        """A comparison that is over, and found nothing wrong: learn from it what there is."""
+        if self._has_gyro and self.turn.trusts_gyro and motion.is_measured:
+            paid_rad = self._gyro_trim.take(off_rad, sigma_rad, motion.time_s)
+            self.turn.debt.owed += paid_rad
+            off_rad -= paid_rad
+        self.turn.keep(motion.until_s, off_rad, motion)
+        if self.way.grip == 1.0 and sigma_m < SEES_ALONG_M and abs(motion.wheels_m) > LEAST_WAY_M:
+            self.way.debt.owed += self._wheel_trim.take(off_m, sigma_m, motion.wheels_m)
 
     def _is_wrong_turn(self, scan: KeyScan, off_rad: float, noise_rad: float, motion: Motion) -> bool:
         """True if the turn is found wrong, or is suspected and the next scan has to confirm it."""
@@ -218,6 +247,12 @@ class MotionCheck:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
 
 
+def _is_odd(match: ScanStep) -> bool:
+    """True if the scans are of two places: few points fit, and both sides differ, or hardly any fits at all."""
+    both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
+    return match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
+
+
 def _is_crowded(scan: KeyScan) -> bool:
     """True if something near fills much of the scan."""
     return bool(np.count_nonzero(scan.ranges_m < CROWD_M) > CROWDED * len(scan.ranges_m))
@@ -226,11 +261,3 @@ def _is_crowded(scan: KeyScan) -> bool:
 def _is_far(pose: Pose2, times: float) -> bool:
     """True if so many times the way or turn lies between two scans after which another key scan is taken."""
     return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD
-
-
-def _difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:
-    """What the laser saw more than was reckoned: m along the way, m to the left of it, rad."""
-    heading_rad = 0.5 * reckoned[2]
-    c, s = math.cos(heading_rad), math.sin(heading_rad)
-    x, y = seen[0] - reckoned[0], seen[1] - reckoned[1]
-    return c * x + s * y, c * y - s * x, math.remainder(seen[2] - reckoned[2], math.tau)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-GYRO_DRIFT, GYRO_REFUSED, WHEEL_SLIP, WHEELS_GRIP, LOST = "gyro-drift", "gyro-refused", "wheel-slip", "wheels-grip", "lost"
+GYRO_DRIFT, GYRO_REFUSED, WHEEL_SLIP, WHEELS_GRIP = "gyro-drift", "gyro-refused", "wheel-slip", "wheels-grip"
+LOST, FOUND = "lost", "found"
 
 
 class News(NamedTuple):

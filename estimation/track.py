@@ -5,11 +5,11 @@ Two poses run side by side: `pose_odom` (interface 0: since the start, never jum
 
 from __future__ import annotations
 
-import bisect
 from collections import deque
+from itertools import pairwise
 
 from estimation.covariance import ZERO, Covariance, blended, stepped
-from estimation.history import enclosing, stamp_of
+from estimation.history import enclosing
 from estimation.se2 import IDENTITY, Pose2, blend, compose, inverse
 
 Tilt = tuple[float, float]
@@ -57,9 +57,9 @@ class Track:
         now = Moment(stamp_s, pose_odom, pose_map, last.covariance_odom, last.covariance_map, tilt)
         now.distance_var_m2, now.turn_var_rad2 = distance_var_m2, turn_var_rad2
         if distance_var_m2 or turn_var_rad2 or step != IDENTITY:
-            now.covariance_odom = _next_covariance(last.covariance_odom, last.pose_odom, pose_odom, now)
+            P = now.covariance_odom = _carried(last.covariance_odom, last.pose_odom, pose_odom, distance_var_m2, turn_var_rad2)
             is_one = pose_map is pose_odom and last.covariance_map is last.covariance_odom  # nobody has adjusted anything yet
-            now.covariance_map = now.covariance_odom if is_one else _next_covariance(last.covariance_map, last.pose_map, pose_map, now)
+            now.covariance_map = P if is_one else _carried(last.covariance_map, last.pose_map, pose_map, distance_var_m2, turn_var_rad2)
         self._moments.append(now)
         self.now = now
         return now
@@ -94,41 +94,38 @@ class Track:
         self.adjustment = compose(pose_map_robot, inverse(then.pose_odom))
         pose, P = pose_map_robot, covariance
         for moment in self._since(stamp_s):
+            if moment.stamp_s < stamp_s:
+                continue
             if moment.stamp_s > stamp_s:
                 moved = compose(self.adjustment, moment.pose_odom)
-                P, pose = _next_covariance(P, pose, moved, moment), moved
+                P, pose = _carried(P, pose, moved, moment.distance_var_m2, moment.turn_var_rad2), moved
             moment.pose_map, moment.covariance_map = pose, P
         return True
 
     def increment_covariance(self, since_s: float, until_s: float) -> Covariance:
         """Covariance of the motion between two stamps, in the odom frame; from the oldest remembered step if `since_s` is older."""
         P, last = ZERO, self.at(since_s) or self._moments[0]
-        for moment in self._since(since_s):
+        for before, moment in pairwise(self._since(since_s)):
             if moment.stamp_s <= last.stamp_s:
                 continue
             end = moment if moment.stamp_s <= until_s else self.at(until_s)
             if end is None or end.stamp_s <= last.stamp_s:
                 break
-            whole_s = moment.stamp_s - self._stamp_before(moment)
-            share = (end.stamp_s - last.stamp_s) / whole_s
-            P = _step_covariance(P, last.pose_odom, end.pose_odom, share * moment.distance_var_m2, share * moment.turn_var_rad2)
+            share = (end.stamp_s - last.stamp_s) / (moment.stamp_s - before.stamp_s)
+            P = _carried(P, last.pose_odom, end.pose_odom, share * moment.distance_var_m2, share * moment.turn_var_rad2)
             last = end
         return P
 
     def _since(self, stamp_s: float) -> list[Moment]:
-        """The moments at and after a stamp, oldest first."""
-        i = bisect.bisect_left(self._moments, stamp_s, key=stamp_of)
-        return [self._moments[k] for k in range(i, len(self._moments))]
-
-    def _stamp_before(self, moment: Moment) -> float:
-        return self._moments[bisect.bisect_left(self._moments, moment.stamp_s, key=stamp_of) - 1].stamp_s
-
-
-
-def _next_covariance(P: Covariance, before: Pose2, after: Pose2, moment: Moment) -> Covariance:
-    return _step_covariance(P, before, after, moment.distance_var_m2, moment.turn_var_rad2)
+        """The last moment before a stamp, as far as it is remembered, and all at and after it, oldest first."""
+        found = []
+        for moment in reversed(self._moments):
+            found.append(moment)
+            if moment.stamp_s < stamp_s:
+                break
+        return found[::-1]
 
 
-def _step_covariance(P: Covariance, before: Pose2, after: Pose2, distance_var_m2: float, turn_var_rad2: float) -> Covariance:
+def _carried(P: Covariance, before: Pose2, after: Pose2, distance_var_m2: float, turn_var_rad2: float) -> Covariance:
     """The covariance carried over one step, whose noise acts along its mean heading."""
     return stepped(P, after[0] - before[0], after[1] - before[1], 0.5 * (before[2] + after[2]), distance_var_m2, turn_var_rad2)

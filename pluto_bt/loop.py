@@ -12,7 +12,7 @@ from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
-from pluto_bt.skills import wall_path
+from pluto_bt.skills import plan_map, wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
 
@@ -35,6 +35,7 @@ def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
     system.scheduler.run_until(NS // 2)
     if with_jobs:
         system.robot.surroundings.warm()
+        plan_map.warm()
     if with_walls:
         wall_path.warm()
 

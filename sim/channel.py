@@ -30,25 +30,22 @@ class Channel:
         self.name = name
         self.faults = faults
         self.due_ns = 0
-        self._sensor, self._device = sensor, device
+        self._sensor, self._device, self._period_ns = sensor, device, sensor.period_ns
         self._arrival_s = 0.0
 
     def send_past(self, for_s: float) -> None:
         """Send what the sensor read while the robot stood at its start, up to the beginning of the run; it waits for its first reader."""
-        period_ns = self._sensor.period_ns
-        for k in range(round(for_s * NS) // period_ns, 0, -1):
-            record = self._sensor.sample(-k * period_ns / NS)
+        for k in range(round(for_s * NS) // self._period_ns, 0, -1):
+            record = self._sensor.sample(-k * self._period_ns / NS)
             if record is not None:
                 self._device.send(record)
 
     def fire(self, now_ns: int, now_s: float) -> None:
         """Take the sample that is due."""
         while self.due_ns <= now_ns:
-            self.due_ns += self._sensor.period_ns
+            self.due_ns += self._period_ns
         record = self._sensor.sample(now_s)
-        if record is not None:
-            record = self.faults.pass_on(record, now_s)
-        if record is None:
+        if record is None or (record := self.faults.pass_on(record, now_s)) is None:
             return
         if record.arrival_s < self._arrival_s:
             record = msgspec.structs.replace(record, arrival_s=self._arrival_s)

@@ -31,9 +31,11 @@ class Device:
     def read(self) -> list[Record]:
         """What arrived since the last call, newest last."""
         arrived: list[Record] = []
-        now_s = self._time.now_s + 1e-9
-        while self._on_the_way and self._on_the_way[0][0] <= now_s:
-            arrived.append(heapq.heappop(self._on_the_way)[2])
+        waiting = self._on_the_way
+        if waiting:
+            now_s = self._time.now_s + 1e-9
+            while waiting and waiting[0][0] <= now_s:
+                arrived.append(heapq.heappop(waiting)[2])
         return arrived
 
 

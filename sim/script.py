@@ -34,7 +34,7 @@ class Script:
 
     def entered(self, x_m: float, y_m: float) -> list[Action]:
         """The actions of the places that the robot has entered since the last call; a robot that starts inside enters at the start."""
-        inside = self._regions.at(x_m, y_m)
+        inside = self._regions.at(x_m, y_m) if self._whens else self._inside
         if inside is self._inside:
             return []
         new = [i for i in inside if i not in self._inside and i not in self._spent]

@@ -84,8 +84,9 @@ class Simulator:
         now_ns = self._time.now_ns
         if self._faults.next_end_ns() <= now_ns:
             self._faults.end_due()
-        for action in self._script.due(now_ns):
-            self._perform(action)
+        if self._script.next_ns() <= now_ns:
+            for action in self._script.due(now_ns):
+                self._perform(action)
         for action in self._script.entered(self._body.x_m, self._body.y_m):
             self._perform(action)
         if self._wrist:

@@ -52,6 +52,7 @@ class WristDevice(Device):
         self._max_rate_radps = math.radians(figures.max_rate_dps)
         self._max_acceleration_radps2 = math.radians(figures.max_acceleration_dps2)
         self._moved_to_ns = 0
+        self._is_under_way = False
         self.stuck = False
 
     def move(self, pan_rad: float, tilt_rad: float, rate_radps: float, acceleration_radps2: float) -> None:
@@ -62,11 +63,13 @@ class WristDevice(Device):
         rate, acceleration = min(rate_radps, self._max_rate_radps), min(acceleration_radps2, self._max_acceleration_radps2)
         self.pan.move(pan_rad, rate, acceleration)
         self.tilt.move(tilt_rad, rate, acceleration)
+        self._is_under_way = True
 
     def bring_to(self, now_ns: int) -> None:
         """Let the axes move until now; costs nothing while they rest."""
-        if not self.stuck and (self.pan.moving or self.tilt.moving):
+        if not self.stuck and self._is_under_way:
             for _ in range((now_ns - self._moved_to_ns) // TICK_NS):
                 self.pan.tick()
                 self.tilt.tick()
+            self._is_under_way = self.pan.moving or self.tilt.moving
         self._moved_to_ns = now_ns

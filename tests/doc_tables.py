@@ -176,8 +176,11 @@ def stops() -> str:
 
 def fault_cases() -> str:
     """What breaks, what becomes of the mission, how soon zero velocity is commanded."""
-    rows = ((case.name, case.how, "–" if case.zero_within_s == GOES_ON else f"{case.zero_within_s:g} s", case.outcome) for case in CASES)
-    return table(("fault, for ever unless said", "noticed by, and then", "zero within", "the run ends"), rows)
+    rows = (
+        (case.name, case.how, "–" if case.zero_within_s == GOES_ON else f"{case.zero_within_s:g} s", case.outcome, case.asked or "–")
+        for case in CASES
+    )
+    return table(("fault, for ever unless said", "noticed by, and then", "zero within", "the run ends", "`why` names"), rows)
 
 
 def reasons() -> str:

@@ -28,6 +28,7 @@ class FaultCase:
         outcome: result and reason of the run; "" after SUCCESS.
         zero_within_s: from the fault to a command of zero; GOES_ON = it need not stop.
         said: a word that the run gives as reason of motion or as event meanwhile.
+        first: the code that `why` gives as first cause, at the end of a run that failed, else while the robot stands; "" is `said`.
         how: what notices it, and what the robot does then.
     """
 
@@ -38,6 +39,12 @@ class FaultCase:
     said: str
     how: str
     platform: str = "atrv2"
+    first: str = ""
+
+    @property
+    def asked(self) -> str:
+        """The first cause that `why` must name; "" where nothing stops the robot."""
+        return "" if self.outcome == "SUCCESS" and self.zero_within_s == GOES_ON else self.first or self.said
 
 
 def fault(device: str, kind: str, more: str = "") -> str:
@@ -62,7 +69,7 @@ CASES: tuple[FaultCase, ...] = (
               "drive: an echo at the skin on all sides; goto gives up"),
     FaultCase("bumper stuck", fault("bumpers", "stuck", 'value="1"'), "FAILURE bumper", 0.1, "bumper", "every link, at once"),
     FaultCase("odometry frozen: old readings", fault("odometry", "frozen"), "FAILURE no-pose", 0.5, "no-pose",
-              "stop filter and drive, by its age"),
+              "stop filter and drive, by its age", first="odometry-stale"),
     FaultCase("odometry stuck: new stamps, old counts", fault("odometry", "stuck"), "FAILURE odometry-frozen", 0.5, "odometry-frozen",
               "stop filter: commanded wheels that count nothing; tries again every second"),
     FaultCase("base blocked", fault("base", "blocked"), "FAILURE stuck", 0.5, "odometry-frozen", "as above; goto gives up"),
@@ -85,7 +92,7 @@ CASES: tuple[FaultCase, ...] = (
     FaultCase("wrist says 17° too much", fault("wrist", "jump", 'value="0.3"'), "FAILURE lost", GOES_ON, "lost",
               "cross-check: what the laser sees does not move as the robot does"),
     FaultCase("fatal laser while the gyro drifts", fault("laser", "fatal") + fault("imu", "jump", 'value="0.2"'), "SUCCESS", 0.5, "gyro-bias-changed",
-              "while the robot waits it stands, and so finds the gyro's new bias"),
+              "while the robot waits it stands, and so finds the gyro's new bias", first="laser-fatal"),
     FaultCase("the leaf raises", fault("leaf:go", "raise"), "STOPPED leaf-error", 0.2, "leaf-error", "the executive, in the same tick"),
 )
 # fmt: on

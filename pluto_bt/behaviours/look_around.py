@@ -12,7 +12,8 @@ from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.paths import SIDES
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
-from pluto_bt.blackboard.messages import ActuatorState, LaserScan, Pair
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LaserScan, Pair
+from pluto_bt.skills import reasons
 
 THERE_RAD: Final = math.radians(2.0)
 RATE_DPS: Final = 60.0
@@ -20,6 +21,8 @@ ACCELERATION_DPS2: Final = 120.0
 PATIENCE_S: Final = 4.0  # a wrist that does not get there keeps nobody waiting longer
 STILL_MPS, STILL_RADPS = 0.02, 0.03
 HOLD_S: Final = 1.0
+AMONG_PEOPLE_S: Final = 10.0  # so long after the stop filter held for a walker, a sweep leaves the sides alone …
+AHEAD: Final = 5  # … and looks ahead so many times for each look down
 
 
 class WristTour(Leaf):
@@ -118,7 +121,8 @@ class LookAround(WristTour):
 
 
 class SweepWrist(WristTour):
-    """Sweeps the laser to both sides and down to the ground, `rounds` times; does not touch the wheels."""
+    """Sweeps the laser to both sides and down to the ground, `rounds` times; does not touch the wheels. Among people it mostly looks ahead: where
+    the laser did not look just now somebody may be, and the stop filter lets the robot creep there at most."""
 
     INPUT_PORTS = {
         "pan_deg": Port(float, False, "how far to either side; 0 = not at all", 40.0, unit="deg", ge=0.0, le=180.0),
@@ -130,17 +134,19 @@ class SweepWrist(WristTour):
 
     def initialise(self) -> None:
         """From the beginning."""
+        self._rounds, self._walker_s = 0, -math.inf
         super().initialise()
-        self._rounds = 0
 
     def targets(self) -> list[Pair]:
-        """Left, down, right, down, as far as each is asked for; ahead at the end."""
+        """Left, down, right, down, as far as each is asked for; among people down, and ahead for a while."""
         wrist = self.robot.platform.devices.wrist if self.robot is not None else None
         if wrist is None:
             return []
         pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
         down = [(0.0, tilt)] if tilt > 0.0 else []
+        if self.now_s() - self._walker_s < AMONG_PEOPLE_S:
+            return [*down, *[(0.0, 0.0)] * AHEAD]
         return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, (0.0, 0.0)]
 
     def update(self) -> Status:
@@ -154,6 +160,9 @@ class SweepWrist(WristTour):
             return self.wait("no wrist") if rounds < 0 else self.succeed("no wrist")
         if self._rounds == rounds:
             return self.succeed(f"{rounds} rounds")
+        held = robot.newest("filter/status")
+        if isinstance(held, FVectorState) and held.reason == reasons.WALKER:
+            self._walker_s = self.now_s()
         if self.go_on(robot):
-            self._rounds, self._next = self._rounds + 1, -1
+            self._rounds, self._next, self._targets = self._rounds + 1, -1, self.targets()
         return self.succeed(f"{rounds} rounds") if self._rounds == rounds else self.wait("sweeping")

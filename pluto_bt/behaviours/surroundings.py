@@ -25,6 +25,7 @@ from pluto_bt.skills.ways import Way, Ways
 
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
 FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
+MOST_DOUBT_M = 0.6  # with more doubt the ground along the edges would be given up
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
 
@@ -43,10 +44,14 @@ class Surroundings:
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
         self._refreshed_s = -math.inf
+        self._first_variance_m2 = math.inf  # of the believed position when the rectangle was set
+        self._doubt_m = 0.0
         self.begin(None)
 
     def begin(self, rectangle: Rectangle | None, goes_on: bool = False) -> None:
         """A job begins; what was seen stays known, what was explored only if the job goes on."""
+        if rectangle != self.rectangle:
+            self._first_variance_m2, self._doubt_m = math.inf, 0.0
         self.rectangle = rectangle
         self.blocked = 0
         self.headway = Headway()
@@ -101,6 +106,9 @@ class Surroundings:
             return False
         self.robot = (dead.pose[0], dead.pose[1], dead.pose[3])
         self.believed = (believed.pose[0], believed.pose[1], believed.pose[3])
+        variance_m2 = max(believed.covariance[0], believed.covariance[4])
+        self._first_variance_m2 = min(self._first_variance_m2, variance_m2)
+        self._doubt_m = min(MOST_DOUBT_M, 2.0 * math.sqrt(variance_m2 - self._first_variance_m2))
         if self._is_empty:
             for grid in self._grids():
                 grid.forget(self.robot)
@@ -119,11 +127,11 @@ class Surroundings:
 
     @property
     def rectangle_here(self) -> Rectangle | None:
-        """The rectangle in the frame of dead reckoning."""
+        """The rectangle in the frame of dead reckoning. Its doubt is two standard deviations of what the position has lost since it was set."""
         if self.rectangle is None:
             return None
         x, y = self.to_dead_reckoning(self.rectangle.home[:2])
-        return self.rectangle._replace(home=(x, y, self.rectangle.home[2] - self.believed[2] + self.robot[2]))
+        return self.rectangle._replace(home=(x, y, self.rectangle.home[2] - self.believed[2] + self.robot[2]), doubt_m=self._doubt_m)
 
     def to_dead_reckoning(self, point: Pair) -> Pair:
         """A point of `Localization/Pose` in the frame of dead reckoning."""
@@ -138,10 +146,18 @@ class Surroundings:
         return heading_rad - self.robot[2] + self.believed[2]
 
     def find(self, goal: Pair | None) -> Way | None:
-        """The best way to a goal (`Localization/Pose`), or with None to the nearest new ground."""
+        """The best way to a goal (`Localization/Pose`), or with None to the nearest new ground; where doubt of the position leaves none, one
+        that is as near to the edge of the rectangle as if there were no doubt."""
+        rectangle = self.rectangle_here
+        way = self._find(goal, rectangle)
+        if way is None and rectangle is not None and rectangle.doubt_m > 0.0:
+            way = self._find(goal, rectangle._replace(doubt_m=0.0))
+        return way
+
+    def _find(self, goal: Pair | None, rectangle: Rectangle | None) -> Way | None:
         if goal is None:
-            return self.ways.to_new_ground(self.robot, self.rectangle_here)
-        return self.ways.to_goal(self.robot, self.to_dead_reckoning(goal), self.rectangle_here)
+            return self.ways.to_new_ground(self.robot, rectangle)
+        return self.ways.to_goal(self.robot, self.to_dead_reckoning(goal), rectangle)
 
 
 def _moved(point: Pair, before: Planar, after: Planar) -> Pair:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ Array = NDArray[np.float64]
 Rng = np.random.Generator
 POST_CORNERS = 16
 DOOR_M = (0.8, 1.5)
-NEAR_M, SETTLED = 0.1, 20  # a camera that is so near to its distance for so many points of the track has arrived
+NEAR_M, SETTLED_M = 0.1, 1.0  # a camera that is so near to its distance for so much of the robot's way has arrived
 
 
 @dataclass
@@ -128,14 +129,17 @@ class Kept(NamedTuple):
 
 
 def kept(track: Sequence[TrackPoint], wall: WallParameters, side: str, edges: Array, distance_m: float) -> Kept:
-    """How a run kept the distance, from when the camera first had it for two seconds."""
+    """How a run kept the distance, from when the camera first had it for a metre."""
     poses = [point.pose for point in track]
+    way_m = np.concatenate(([0.0], np.cumsum([math.dist(a[:2], b[:2]) for a, b in itertools.pairwise(poses)])))
     cameras = camera_path(poses, wall.camera_back_m, wall.camera_side_m if side == "left" else -wall.camera_side_m)
-    is_near = np.abs(distances(cameras, edges)[0] - distance_m) < NEAR_M
-    arrived = np.flatnonzero(np.convolve(is_near, np.ones(SETTLED)) >= SETTLED)
+    far = np.append(np.flatnonzero(np.abs(distances(cameras, edges)[0] - distance_m) >= NEAR_M), len(poses) - 1)
+    next_far = far[np.searchsorted(far, np.arange(len(poses)))]
+    arrived = np.flatnonzero(way_m[next_far] - way_m >= SETTLED_M)
     if not len(arrived):
         return Kept(math.inf, math.inf, 0.0)
-    corner_m = distance_m + wall.camera_side_m + wall.fillet_m + wall.camera_back_m  # so far from a corner its turn begins to matter
+    swing_m = math.hypot(wall.camera_back_m, wall.camera_side_m)
+    corner_m = distance_m + wall.camera_side_m + swing_m  # there the robot turns, and so far behind it the camera swings
     return kept_distance(cameras[arrived[0] :], edges, distance_m, corner_m)
 
 
@@ -157,9 +161,13 @@ def distances(points: Array, edges: Array) -> tuple[Array, Array]:
 
 
 def kept_distance(cameras: Array, edges: Array, distance_m: float, corner_m: float) -> Kept:
-    """Compare the distances of points (n, 2) from the nearest edge with the one to keep. Nearer than `corner_m` to its ends an edge is a corner."""
+    """Compare the distances of points (n, 2) from the nearest edge with the one to keep.
+
+    Where an end of an edge is nearer than `corner_m` to the camera, or to the place on the wall beside it, is a corner.
+    """
     away, feet = distances(cameras, edges)
     off = np.abs(away - distance_m)
-    corners = edges[:, :2].tolist() + edges[:, 2:].tolist()
-    is_straight = np.min([np.hypot(feet[:, 0] - x, feet[:, 1] - y) for x, y in corners], axis=0) > corner_m
+    ends = np.vstack((edges[:, :2], edges[:, 2:]))
+    to_end_m = [np.hypot(*(places[:, None] - ends).transpose(2, 0, 1)).min(axis=1) for places in (cameras, feet)]
+    is_straight = np.minimum(*to_end_m) > corner_m
     return Kept(float(off[is_straight].max(initial=0.0)), float(off[~is_straight].max(initial=0.0)), float(is_straight.mean()))

@@ -71,7 +71,7 @@ def _foxglove(mine: Measured) -> BenchRow:
 
 
 def _ours(clients: int) -> Measured:
-    with _process("-m", "pluto_bt.bench.silent_robot", str(SOURCE_HZ), str(clients + 100)) as process:
+    with process_of("-m", "pluto_bt.bench.silent_robot", str(SOURCE_HZ), str(clients + 100)) as process:
         assert process.stdout is not None
         port, pid = map(int, process.stdout.readline().split())
         hello = f'<subscribe topic="{TOPIC}" max_rate_hz="{HZ:g}"/>'.encode()
@@ -82,12 +82,13 @@ def _baseline(kind: str, clients: int) -> Measured:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    with _process(str(BASELINE), kind, str(port), f"{HZ:g}") as process:
+    with process_of(str(BASELINE), kind, str(port), f"{HZ:g}") as process:
         return _listen(port, process.pid, clients, _say_hello_websocket if kind == "foxglove" else lambda connection: None)
 
 
 @contextlib.contextmanager
-def _process(*words: str) -> Iterator[subprocess.Popen[bytes]]:
+def process_of(*words: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A Python process, killed at the end."""
     process = subprocess.Popen([sys.executable, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     try:
         yield process
@@ -135,15 +136,15 @@ def _listen(port: int, pid: int, clients: int, hello: object) -> Measured:
             connections[connection.fileno()] = connection
             poll.register(connection, select.EPOLLIN)
         _read(poll, connections, SETTLE_S)
-        before_s = _cpu_s(pid)
+        before_s = cpu_s(pid)
         delays_ms = _read(poll, connections, MEASURE_S)
-        cpu_s = _cpu_s(pid) - before_s
+        used_s = cpu_s(pid) - before_s
     finally:
         for connection in connections.values():
             connection.close()
         poll.close()
     p50, p99 = np.percentile(delays_ms, [50.0, 99.0]) if len(delays_ms) else (np.inf, np.inf)
-    return Measured(1e3 * cpu_s / max(1, len(delays_ms)), float(p50), float(p99), len(delays_ms))
+    return Measured(1e3 * used_s / max(1, len(delays_ms)), float(p50), float(p99), len(delays_ms))
 
 
 def _read(poll: select.epoll, connections: dict[int, socket.socket], seconds: float) -> list[float]:
@@ -158,7 +159,7 @@ def _read(poll: select.epoll, connections: dict[int, socket.socket], seconds: fl
     return delays
 
 
-def _cpu_s(pid: int) -> float:
+def cpu_s(pid: int) -> float:
     """Processor seconds of a process so far, its own and the kernel's for it."""
     fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / _TICKS

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from pluto_bt.behaviours.reasons import REASONS
@@ -56,10 +57,12 @@ class Play:
         words: every reason that `motion/status` gave, in order of first appearance.
     """
 
-    def __init__(self, inputs: Inputs, max_time_s: float, before: Callable[[Runner], None] = lambda runner: None) -> None:
-        """`before`: something to arrange before the run begins."""
+    def __init__(
+        self, inputs: Inputs, max_time_s: float, before: Callable[[Runner], None] = lambda runner: None, record: Path | None = None
+    ) -> None:
+        """`before`: something to arrange before the run begins. `record`: where the black box goes."""
         self.events: list[Any] = []
-        self.runner: Runner = make_runner(inputs, max_time_s=max_time_s, on_event=self.events.append)
+        self.runner: Runner = make_runner(inputs, max_time_s=max_time_s, on_event=self.events.append, record=record)
         self.commands: list[tuple[float, float, float]] = []
         self.words: dict[str, float] = {}
         self.codes: dict[int, float] = {}

@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable
-from typing import NamedTuple
+
+import msgspec
 
 from pluto_bt.blackboard.messages import ActuatorState
 
 WRONG_STATE = "wrong-state"
 
 
-class Letter(NamedTuple):
+class Letter(msgspec.Struct, frozen=True, gc=False):
     """A command as it was posted."""
 
     source: str
@@ -51,6 +52,8 @@ class Inbox:
 
     def take(self) -> Letter | None:
         """The newest letter, once."""
+        if self._letter is None:
+            return None  # whoever leaves one right now wakes the link after it
         with self._lock:
             letter, self._letter = self._letter, None
         return letter

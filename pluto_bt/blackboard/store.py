@@ -5,19 +5,19 @@ All calls are thread-safe. A lock guards only the bookkeeping; values are frozen
 
 from __future__ import annotations
 
-import bisect
 import math
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
+
+import msgspec
 
 from pluto_bt.blackboard.messages import Message
 from pluto_bt.blackboard.topics import TOPICS, Topic
 from pluto_bt.source import PlutoError, did_you_mean
 
 
-class Sample(NamedTuple):
+class Sample(msgspec.Struct, frozen=True, gc=False):
     """A value with its bookkeeping. "Changed" means that `seq` moved; it counts from 1 for each topic."""
 
     value: Message
@@ -48,7 +48,9 @@ class Publisher:
 
 def enclosing(samples: tuple[Sample, ...], stamp_s: float) -> tuple[Sample, Sample] | None:
     """The two samples, of those oldest first, whose stamps enclose `stamp_s`, for interpolation; None if it lies outside."""
-    i = bisect.bisect_left(samples, stamp_s, key=_stamp)
+    i = len(samples)
+    while i and samples[i - 1].value.stamp_s >= stamp_s:  # what is asked for is nearly always among the newest
+        i -= 1
     if i < len(samples) and samples[i].value.stamp_s == stamp_s:
         return samples[i], samples[i]
     return (samples[i - 1], samples[i]) if 0 < i < len(samples) else None
@@ -150,6 +152,16 @@ class Blackboard:
         index, newest = self.index_of(name), self._newest
         return lambda: newest[index]
 
+    def value_reader(self, name: str) -> Callable[[], Message | None]:
+        """The same for the newest value."""
+        index, newest = self.index_of(name), self._newest
+
+        def value() -> Message | None:
+            sample = newest[index]
+            return None if sample is None else sample.value
+
+        return value
+
     def is_stale(self, name: str, now_s: float) -> bool:
         """True if the value is missing or older than the table allows."""
         index = self.index_of(name)
@@ -187,7 +199,10 @@ class Blackboard:
 
     def put_back(self, name: str, sample: Sample) -> None:
         """Write a recorded sample with the number and time it had; for whoever plays a recording."""
-        self._keep(self.index_of(name), sample)
+        index = self.index_of(name)
+        self._newest[index], kept = sample, self._history[index]
+        if kept is not None:
+            kept.append(sample)
 
     def on_change(self, name: str, wake: Callable[[], None]) -> None:
         """Call `wake` after each write of the topic, in the writer's thread; it must be quick and must not raise."""
@@ -197,20 +212,11 @@ class Blackboard:
 
     def _write(self, index: int, value: Message, now_s: float) -> None:
         with self._lock:
-            last = self._newest[index]
-            sample = Sample(value, 1 if last is None else last.seq + 1, now_s)
-            self._keep(index, sample)
+            last, kept = self._newest[index], self._history[index]
+            sample = self._newest[index] = Sample(value, 1 if last is None else last.seq + 1, now_s)
+            if kept is not None:
+                kept.append(sample)
             if self._tap is not None:
                 self._tap(index, sample)
         for wake in self._watchers[index]:
             wake()
-
-    def _keep(self, index: int, sample: Sample) -> None:
-        self._newest[index] = sample
-        kept = self._history[index]
-        if kept is not None:
-            kept.append(sample)
-
-
-def _stamp(sample: Sample) -> float:
-    return sample.value.stamp_s

@@ -24,6 +24,8 @@ BENCHES = {
     "jbot": "1000 feet out and back between trees: where the robot believes to be",
     "replay": "100 recorded runs executed again, in lockstep and in threads; what recording costs",
     "resume": "kill -9 at every tick of a mission, then go on",
+    "fanout": "one value to 1000 clients of the gateway, against plain uvloop writes and foxglove-sdk",
+    "gateway": "requests a second, parsing and encoding against lxml, what clients and a killed gateway cost the robot",
     "memory": "memory of an hour's simulated run",
 }
 

@@ -77,8 +77,11 @@ def _run(args: argparse.Namespace) -> RunResult:
     refuse_shadowed_packages()
     faults = Faults()
     check_outputs(args, faults)
-    access = read_access(args.gateway_tls, args.gateway_tokens, faults)
-    check_gateway(args.gateway, access, faults)
+    access_faults = Faults()
+    access = read_access(args.gateway_tls, args.gateway_tokens, access_faults)
+    faults.extend(access_faults.in_order())
+    if not access_faults.has_errors:
+        check_gateway(args.gateway, access, faults)
     check_groot(args.groot, faults)
     speed, max_time_s = read_positive(args.speed, "--speed", faults), read_positive(args.max_time, "--max-time", faults)
     inputs = read_inputs(Request.of(args), faults=faults)

@@ -14,6 +14,7 @@ from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.subscriptions import Flow
 
 GRACE_S = 0.05
+EARLY_S = 0.005  # a value that comes so little too early is taken: the next one might come a whole period too late
 LANE_S, MOST_LANES = 0.02, 16
 
 
@@ -35,17 +36,12 @@ class Lane:
             self.next_s = self.next_s + self.period_s if late_s < self.period_s else now_s + self.period_s
         line = newest.line(now_s) if self.flows else b""
         has_rate = self.period_s > 0.0
-        over: list[Flow] = []
         for flow in self.flows:
             seen, sink = flow.seq, flow.sink
-            if flow.is_over:
-                over.append(flow)
-            elif sink is not None and seen and seen != seq and (has_rate or seen == seq - 1) and sink(line):
+            if sink is not None and seen and seen != seq and (has_rate or seen == seq - 1) and sink(line):
                 flow.seq = seq
             elif flow.take(newest):
                 yield flow
-        for flow in over:
-            del self.flows[flow]
 
 
 class Channels:
@@ -67,7 +63,7 @@ class Channels:
 
     def join(self, topic: str, flow: Flow, now_s: float) -> bool:
         """A new flow; True if it has been given the value that is there."""
-        lanes = min(MOST_LANES, max(1, round(flow.period_s / LANE_S)))
+        lanes = _lanes_of(flow)
         key = (flow.period_s, flow.client % lanes)
         lane = self._lanes[topic].get(key)
         if lane is None:
@@ -76,11 +72,19 @@ class Channels:
         newest = self._newest.get(topic)
         return newest is not None and flow.take(newest)
 
+    def leave(self, topic: str, flow: Flow) -> None:
+        """Nobody wants this flow any more; an empty lane goes with it."""
+        lanes, key = self._lanes[topic], (flow.period_s, flow.client % _lanes_of(flow))
+        if key in lanes:
+            lanes[key].flows.pop(flow, None)
+            if not lanes[key].flows:
+                del lanes[key]
+
     def offer(self, newest: Newest, now_s: float) -> Iterator[Flow]:
         """A new value: serve the lanes that are due; yields the flows for whom it waits."""
         self._newest[newest.topic] = newest
         for lane in self._lanes[newest.topic].values():
-            if now_s >= lane.next_s:
+            if now_s >= lane.next_s - min(EARLY_S, 0.25 * lane.period_s):
                 yield from lane.serve(newest, now_s)
 
     def late(self, now_s: float) -> Iterator[Flow]:
@@ -90,3 +94,8 @@ class Channels:
                 for lane in self._lanes[topic].values():
                     if lane.seq != newest.seq and now_s >= lane.next_s:
                         yield from lane.serve(newest, now_s)
+
+
+def _lanes_of(flow: Flow) -> int:
+    """How many lanes the flows of its period are spread over."""
+    return min(MOST_LANES, max(1, round(flow.period_s / LANE_S)))

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from pluto_bt.gateway import inquiries, replies, requests
 from pluto_bt.gateway.access import is_control
 from pluto_bt.gateway.audit import Audit
+from pluto_bt.gateway.callers import Callers
 from pluto_bt.gateway.leases import Held, Leases
 from pluto_bt.gateway.outcomes import Outcomes
 from pluto_bt.gateway.port import RefusedError, RobotPort
@@ -33,8 +34,7 @@ class Desk:
         self._leases = Leases()
         self._outcomes = Outcomes()
         self._runs = Runs(port, self._tell)
-        self._client_of: dict[str, int] = {}  # key -> its newest connection
-        self._key_of: dict[int, str] = {}
+        self._callers = Callers()
         self._stopped: deque[str] = deque()
         self.stops = 0  # counts stops, so that a request which a stop overtook is known
 
@@ -66,7 +66,8 @@ class Desk:
 
     def handle(self, ask: Ask, stops: int, now_s: float) -> None:
         """Answer one request; `stops` is the count of stops when it came."""
-        key = self._meet(ask)
+        key, left = self._callers.meet(ask)
+        self._end(left)
         self._notice(now_s)
         try:
             reply, later = self._answer(ask, key, stops, now_s)
@@ -90,21 +91,17 @@ class Desk:
 
     def gone(self, client: int) -> None:
         """A client is no more: his lease ends, unless his session has a newer connection."""
-        key = self._key_of.pop(client, None)
-        if key is None or self._client_of.get(key) != client:
-            return
-        del self._client_of[key]
-        held = self._leases.end(key)
-        if held is not None:
-            self._lost(held, "ended with his connection")
+        self._end(self._callers.gone(client))
 
     def gateway_lost(self) -> None:
         """The gateway died: who has a named session may come back within his ttl, the others cannot."""
-        for client, key in list(self._key_of.items()):
-            if key.startswith("#"):
-                self.gone(client)
-        self._key_of.clear()
-        self._client_of.clear()
+        for key in self._callers.all_gone():
+            self._end(key)
+
+    def _end(self, key: str | None) -> None:
+        held = self._leases.end(key) if key is not None else None
+        if held is not None:
+            self._lost(held, "ended with his connection")
 
     # answers -----------------------------------------------------------------------------------------------------
     def _answer(self, ask: Ask, key: str, stops: int, now_s: float) -> tuple[AnyReply, Sequence[AnyReply]]:
@@ -249,19 +246,8 @@ class Desk:
             self._stop_again(stops, ask)
         return replies.Mission(state=port.mission_state()) if request.op == "state" else Ok()
 
-    # who is who --------------------------------------------------------------------------------------------------
-    def _meet(self, ask: Ask) -> str:
-        """The key under which the client's lease and outcomes stand; his newest connection hears what follows."""
-        key = ask.session or f"#{ask.client}"
-        old = self._key_of.get(ask.client)
-        if old is not None and old != key:
-            self.gone(ask.client)
-        self._key_of[ask.client] = key
-        self._client_of[key] = max(ask.client, self._client_of.get(key, 0))
-        return key
-
     def _tell(self, key: str, reply: AnyReply) -> None:
-        client = self._client_of.get(key)
+        client = self._callers.client_of(key)
         if client is not None:
             self._send(Answer(client, "later", reply))
 

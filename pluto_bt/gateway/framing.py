@@ -16,14 +16,10 @@ from lxml import etree
 
 from pluto_bt.gateway.complaint import complaint
 from pluto_bt.gateway.limits import Limits
+from pluto_bt.gateway.opening import OpeningError, opening
 from pluto_bt.gateway.plain import PLAIN_ATTRIBUTES, PLAIN_DEPTH, Child, take
 
 _SPACE = re.compile(rb"[ \t\r\n]*")
-_NAME_START = re.compile(rb"[A-Za-z_:\x80-\xff]")
-_DECLARATION = re.compile(
-    rb"""<\?xml\s+version\s*=\s*["']1\.[0-9]["'](?:\s+encoding\s*=\s*["']([A-Za-z][A-Za-z0-9._-]*)["'])?(?:\s+standalone\s*=\s*["'](?:yes|no)["'])?\s*\?>"""
-)
-_DECLARATION_BYTES = 256
 
 
 class FramingError(Exception):
@@ -38,9 +34,10 @@ class FramingError(Exception):
 
 
 class Message(msgspec.Struct, frozen=True, gc=False):
-    """One complete top-level element: what is in it, where it began in the stream, and its bytes as they came.
+    """One complete top-level element: what is in it, and where it began in the stream.
 
-    `text` is what stands beside the children; of a `mission` neither that nor the children are told: its document is in `raw`.
+    `text` is what stands beside the children. Of a `mission` neither is told: its document is in `raw`, the bytes as they came (b"" if the
+    message is plain).
     """
 
     tag: str
@@ -49,7 +46,7 @@ class Message(msgspec.Struct, frozen=True, gc=False):
     text: str
     line: int
     column: int
-    raw: bytes
+    raw: bytes = b""
 
 
 class Framer:
@@ -65,6 +62,7 @@ class Framer:
         self._depth = 0
         self._in_mission = False
         self._end: re.Pattern[bytes] | None = None  # of the message's end tag, once its start tag is complete
+        self._most = limits.message_bytes
         self._takes_plain = limits.attributes >= PLAIN_ATTRIBUTES and limits.depth >= PLAIN_DEPTH
 
     def feed(self, data: bytes) -> Iterator[Message]:
@@ -73,13 +71,13 @@ class Framer:
         text = data.decode() if self._takes_plain and data.isascii() else ""
         while at < len(data):
             plain = take(text, at) if text and self._parser is None and not self._raw else None
-            if plain is not None and self._count + plain[4] - at <= self._limits.message_bytes:
+            if plain is not None and plain[4] - at <= self._most - self._count:
                 tag, attrib, children, start, end = plain
                 if start - at == 1 and text[at] == "\n":
                     self._line, self._column = self._line + 1, 1
                 elif start > at:
                     self._advance(data[at:start])
-                yield Message(tag, attrib, children, "", self._line, self._column, data[start:end])
+                yield Message(tag, attrib, children, "", self._line, self._column)
                 self._column += end - start
                 self._count, self._begun, at = 0, True, end
                 continue
@@ -111,51 +109,14 @@ class Framer:
     def _decide(self) -> None:
         """Whether the bytes in `_raw` open a message, are the declaration, or break the stream."""
         head = bytes(self._raw)
-        if head[:1] != b"<":
-            raise self._foreign(head)
-        if len(head) == 1:
-            return
-        if _NAME_START.match(head, 1):
+        try:
+            found = opening(head, is_first=not self._begun)
+        except OpeningError as error:
+            raise self._error(error.code, error.text) from None
+        if found == "message":
             self._open()
-        elif head[1:2] == b"?":
-            self._declaration(head)
-        elif head[1:2] != b"!":
-            code = "bad-encoding" if head[1:2] == b"\0" else "not-well-formed"
-            raise self._error(code, f"expected the name of an element after '<', found {head[1:2]!r}")
-        elif len(head) > 2:
-            code = "not-well-formed" if head[2:3] in b"-[" else "restricted-xml"
-            raise self._error(code, "expected an element; comments and CDATA stand inside messages only, declarations (DOCTYPE, ENTITY) nowhere")
-
-    def _declaration(self, head: bytes) -> None:
-        """One XML declaration may open the stream; it is cut off."""
-        could_be = b"<?xml".startswith(head[:5]) if len(head) <= 5 else head[:5] == b"<?xml"
-        if self._begun or not could_be or (len(head) == 6 and head[5:] not in b" \t\r\n"):
-            text = "expected an element, found a processing instruction (or an XML declaration that is not the first thing sent)"
-            raise self._error("restricted-xml", text)
-        if not head.endswith(b"?>"):
-            if len(head) > _DECLARATION_BYTES:
-                raise self._error("not-well-formed", "expected '?>' at the end of the XML declaration")
-            return
-        found = _DECLARATION.fullmatch(head)
-        if not found:
-            raise self._error("not-well-formed", 'expected <?xml version="1.0" encoding="UTF-8"?>')
-        encoding = (found[1] or b"UTF-8").decode("ascii")
-        if encoding.upper() not in ("UTF-8", "US-ASCII"):
-            raise self._error("bad-encoding", f"expected encoding UTF-8, found {encoding}")
-        self._forget(head)
-
-    def _foreign(self, head: bytes) -> FramingError:
-        """The error for a byte that opens nothing, with a hint for the two usual strangers."""
-        byte = head[0]
-        if byte in (0x00, 0xFE, 0xFF) and not self._begun:
-            return self._error("bad-encoding", "expected UTF-8, found what looks like UTF-16 or UTF-32")
-        hint = ""
-        if byte == 0x16:
-            hint = "; this looks like TLS, and this port speaks plain text"
-        elif head in (b"G", b"P", b"H", b"O", b"D") and not self._begun:
-            hint = "; this is not an HTTP server"
-        shown = repr(chr(byte)) if 0x20 <= byte < 0x7F else f"byte 0x{byte:02x}"
-        return self._error("not-well-formed", f"expected '<' or white space between messages, found {shown}{hint}")
+        elif found == "declaration":
+            self._forget(head)
 
     # inside a message --------------------------------------------------------------------------------------------
     def _open(self) -> None:

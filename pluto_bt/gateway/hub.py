@@ -75,7 +75,9 @@ class Hub:
         if session.client in self._asked:
             self._asked.discard(session.client)
             self._send(Gone(session.client))
+        old = dict(session.subscriptions.flows)
         session.subscriptions.end()
+        self._leave(old, session)
         self.watch()
 
     def shut(self) -> None:
@@ -150,13 +152,19 @@ class Hub:
         if not any(matches(pattern, topic) for topic in self.topics):
             raise RefusedError("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self.topics) or "<describe/> lists all"}')
 
-    def joined(self, session: Session, old: set[Flow], now_s: float) -> None:
+    def joined(self, session: Session, old: dict[str, Flow], now_s: float) -> None:
         """Watch what the session wants now, and give it what is already here; `old` = the flows it had before."""
+        self._leave(old, session)
         self.watch()
         subscriptions = session.subscriptions
         for topic, flow in subscriptions.flows.items():
-            if flow not in old and self._channels.join(topic, flow, now_s):
+            if old.get(topic) is not flow and self._channels.join(topic, flow, now_s):
                 subscriptions.due[flow] = None
+
+    def _leave(self, old: dict[str, Flow], session: Session) -> None:
+        for topic, flow in old.items():
+            if session.subscriptions.flows.get(topic) is not flow:
+                self._channels.leave(topic, flow)
 
     def watch(self) -> None:
         """Tell the executive which topics are wanted, if that has changed."""

@@ -13,8 +13,8 @@ import msgspec
 PLAIN_ATTRIBUTES, PLAIN_DEPTH = 8, 2
 _NAME = r"[A-Za-z_][A-Za-z0-9_.\-]*"
 _ATTRIBUTE = f' +({_NAME})="([ !#-%\'-;=-~]*)"'  # values of printable characters, without & and <
-_START = re.compile(f"[ \\t\\r\\n]*<({_NAME})" + f"(?:{_ATTRIBUTE}" * PLAIN_ATTRIBUTES + ")?" * PLAIN_ATTRIBUTES + " */?>")
-_CHILD = re.compile(f"<({_NAME})>([ !-%'-;=?-~]*)</")  # nor with >: the parser knows where that may stand
+_FEW, _MANY = (re.compile(f"[ \\t\\r\\n]*<({_NAME})" + f"(?:{_ATTRIBUTE}" * n + ")?" * n + " */?>") for n in (4, PLAIN_ATTRIBUTES))
+_CHILD = re.compile(f"<({_NAME})>([ !-%'-;=?-~]*)</\\1>")  # nor with >: the parser knows where that may stand
 
 
 class Child(msgspec.Struct, frozen=True, gc=False):
@@ -32,18 +32,29 @@ Plain = tuple[str, dict[str, str], tuple[Child, ...], int, int]
 
 def take(text: str, at: int) -> Plain | None:
     """The plain element that begins at `at`, white space before it or not; None for what only the parser can tell."""
-    found = _START.match(text, at)
+    found = _FEW.match(text, at)
     if found is None:
+        found = _MANY.match(text, at)
+        if found is None:
+            return None
+        words, last = found.groups(), found.lastindex or 1
+        attrib, count = dict(zip(words[1:last:2], words[2:last:2], strict=True)), last // 2
+        tag: str = words[0]
+    else:  # the same without loops
+        tag, a, for_a, b, for_b, c, for_c, d, for_d = found.groups()
+        if b is None:
+            attrib, count = ({}, 0) if a is None else ({a: for_a}, 1)
+        elif c is None:
+            attrib, count = {a: for_a, b: for_b}, 2
+        else:
+            attrib, count = ({a: for_a, b: for_b, c: for_c}, 3) if d is None else ({a: for_a, b: for_b, c: for_c, d: for_d}, 4)
+    if len(attrib) != count or "xmlns" in attrib:  # one stands twice, or declares a name-space
         return None
-    words, last, end = found.groups(), found.lastindex or 1, found.end()
-    attrib = dict(zip(words[1:last:2], words[2:last:2], strict=True)) if last > 1 else {}
-    if 2 * len(attrib) + 1 != last or "xmlns" in attrib:  # one stands twice, or declares a name-space
-        return None
-    tag, start = words[0], found.start(1) - 1
+    start, end = at if text[at] == "<" else found.start(1) - 1, found.end()
     if text[end - 2] == "/":
         return tag, attrib, (), start, end
     close = text.find(f"</{tag}>", end)
     inner = _CHILD.findall(text, end, close) if close > end else None
-    if not inner or "".join([f"<{name}>{word}</{name}>" for name, word in inner]) != text[end:close]:
+    if not inner or sum([2 * len(name) + len(word) for name, word in inner]) + 5 * len(inner) != close - end:  # something stands between them
         return None
     return tag, attrib, tuple([Child(name, {}, word) for name, word in inner]), start, close + len(tag) + 3

@@ -123,17 +123,18 @@ class Session:
                 self.say(hub.describe(request))
             case requests.Subscribe():
                 hub.require_topic(request.topic)
-                old = set(self.subscriptions.flows.values())
+                old = dict(self.subscriptions.flows)
                 self.subscriptions.add(request, hub.topics)
                 self.say(Ok(id=request.id))
                 hub.joined(self, old, now_s)
             case requests.Get():
                 self._get(request, now_s)
             case requests.Unsubscribe():
+                old = dict(self.subscriptions.flows)
                 if not self.subscriptions.remove(request.topic, hub.topics):
                     raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
                 self.say(Ok(id=request.id))
-                hub.watch()
+                hub.joined(self, old, now_s)
             case requests.Bye():
                 self._connection.close()
             case _:

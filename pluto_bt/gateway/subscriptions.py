@@ -20,10 +20,9 @@ class Flow:
         sink: sends at once; None where that cannot be, or the line is not the same for all clients.
         seq: of the last value taken or sent.
         waiting: a value that is not sent yet, because something stands before it.
-        is_over: nobody wants it any more.
     """
 
-    __slots__ = ("client", "dropped", "is_over", "last_body", "period_s", "seq", "shown", "sink", "waiting", "wish")
+    __slots__ = ("client", "dropped", "last_body", "period_s", "seq", "shown", "sink", "waiting", "wish")
 
     def __init__(self, client: int, topic: str, wish: Subscribe, sink: Sink | None) -> None:
         self.client = client
@@ -35,7 +34,6 @@ class Flow:
         self.waiting: Newest | None = None
         self.dropped = 0
         self.last_body = ""
-        self.is_over = False
 
     def take(self, newest: Newest) -> bool:
         """Take a value to be sent; what still waited is lost. False if it says nothing new."""
@@ -110,7 +108,6 @@ class Subscriptions:
                 flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish, self.sink)
         for topic, flow in self.flows.items():
             if flows.get(topic) is not flow:
-                flow.is_over = True
                 self.due.pop(flow, None)
         self.flows = flows
 

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 
+import msgspec
+
+_json = msgspec.json.Encoder()
 _SPECIAL = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 _TO_ESCAPE = re.compile('[&<>"\n\r\t]')
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # XML 1.0 has no escape for these
@@ -25,9 +28,12 @@ def number(value: float) -> str:
     return repr(value)
 
 
-def numbers(values: Iterable[float]) -> str:
-    """Numbers separated by spaces."""
-    return " ".join(map(number, values))
+def numbers(values: Sequence[float]) -> str:
+    """Numbers separated by spaces, each as its shortest text that reads back as the same double."""
+    listed = _json.encode(values)
+    if b"n" in listed:  # null: JSON has no words for what is not finite
+        return " ".join(map(number, values))
+    return listed[1:-1].decode().replace(",", " ")
 
 
 def scalar(value: Attribute) -> str:

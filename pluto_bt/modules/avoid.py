@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from pluto_bt.modules.robot_file import RobotFile
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
+AWAITS_S = 10.0  # so long after the stop filter held for a walker his fellows, and the echoes that he left behind (8 s), are still awaited
 BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
 
 
@@ -46,6 +48,7 @@ class Avoid:
         self._scan, self._check = newest(context, "sick/scan"), newest(context, "Localization/Check")
         self._view: ScanView | None = None
         self._sent: ActuatorState | None = None
+        self._walker_s = -math.inf
 
     def start(self, now_s: float) -> None:
         """Begin without a command."""
@@ -103,13 +106,14 @@ class Avoid:
         self._drive.stop("avoid", now_s)  # not `post`: a link that is being stopped may already have lost its inbox to the lease holder
 
     def _senses(self, now_s: float, drive: FVectorState | None) -> AvoidSenses:
-        data, waits = (STILL, False) if drive is None else (drive.data, drive.reason == reasons.WALKER)
+        data = STILL if drive is None else drive.data
+        self._walker_s = now_s if drive is not None and drive.reason == reasons.WALKER else self._walker_s
         oldest_s = now_s - self._parameters.pose_stale_s
         raw = self._raw()
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
         check: FVectorState | None = self._check()
-        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), waits)
+        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), now_s - self._walker_s < AWAITS_S)
         if check is None or check.reason not in (reasons.LOST, reasons.NO_POSE):
             return senses
         return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))

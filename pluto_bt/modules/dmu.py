@@ -15,7 +15,9 @@ from estimation.inertial import InertialHeading
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.imu import imu_state, sum_of_numbers
+from pluto_bt.modules.link import newest
 from pluto_bt.modules.relay import Relay
+from pluto_bt.skills.limits import STILL
 
 
 class DmuParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -36,9 +38,8 @@ class Dmu(Relay[InertialRecord]):
         p = context.parameters(DmuParameters)
         self._parameters = p
         self._state = context.board.publisher("dmu/state", "dmu")
-        self._odometry = context.board.reader("ATRV2/Drive/Raw")
-        self._speed = context.board.reader("car/speed")
-        self._command = context.board.reader("ATRV2/Drive/Command")
+        self._odometry, self._speed = newest(context, "ATRV2/Drive/Raw"), newest(context, "car/speed")
+        self._command = newest(context, "ATRV2/Drive/Command")
         self.bias = GyroBias(p.bias_samples, math.radians(p.max_bias_spread_dps))
         self.heading = InertialHeading(p.filter_s)
         self._rest: GyroRest | None = None
@@ -77,15 +78,17 @@ class Dmu(Relay[InertialRecord]):
 
     def _is_still(self) -> bool:
         """True if the wheels say so and nothing else is commanded; without any word from the wheels it is not known, so False."""
-        p, command, odometry, speed = self._parameters, self._command(), self._odometry(), self._speed()
-        if command is not None and isinstance(command.value, ActuatorState) and command.value.velocity != (0.0, 0.0):
+        command: ActuatorState | None = self._command()
+        if command is not None and command.velocity != STILL:
             return False
-        if speed is not None and isinstance(speed.value, SpeedState):
-            return speed.value.speed_mps <= p.still_speed_mps
-        if odometry is not None and isinstance(odometry.value, ActuatorState):
-            v, w = odometry.value.velocity
-            return abs(v) <= p.still_speed_mps and abs(w) <= self._still_turn_radps
-        return False
+        p, speed = self._parameters, self._speed()
+        if isinstance(speed, SpeedState):
+            return speed.speed_mps <= p.still_speed_mps
+        odometry: ActuatorState | None = self._odometry()
+        if odometry is None:
+            return False
+        v, w = odometry.velocity
+        return abs(v) <= p.still_speed_mps and abs(w) <= self._still_turn_radps
 
     def _tell(self, news: BiasNews) -> None:
         if news is BiasNews.KNOWN:

@@ -19,7 +19,7 @@ class Gateway:
         self._say = context.say
         self._restarts, self._is_lost, self._trouble = 0, False, ""
         audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
-        link = GatewayLink(GatewayPort(context), options.gateway or Address(), options.gateway_access, audit=audit)
+        link = GatewayLink(GatewayPort(context), options.gateway or Address(), options.gateway_access, options.robot.gateway, audit)
         self._link: GatewayLink | None = link
         try:
             link.listen()
@@ -32,6 +32,11 @@ class Gateway:
     def address(self) -> Address | None:
         """Where the gateway listens, None if it does not."""
         return None if self._link is None else self._link.address
+
+    @property
+    def pid(self) -> int | None:
+        """The gateway's process, None while there is none."""
+        return None if self._link is None else self._link.pid
 
     def start(self, now_s: float) -> None:
         """Spawn the process and tell the address."""
@@ -54,8 +59,9 @@ class Gateway:
 
     def _tell(self, link: GatewayLink) -> None:
         """What operators should know of the process."""
-        if link.restarts != self._restarts:
-            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
-        elif link.is_lost and not self._is_lost:
+        is_back = link.restarts != self._restarts
+        if (link.is_lost or is_back) and not self._is_lost:
             self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended; it is started again")
+        if is_back:
+            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
         self._restarts, self._is_lost = link.restarts, link.is_lost

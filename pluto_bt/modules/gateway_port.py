@@ -63,7 +63,7 @@ class GatewayPort:
     def newest(self, topic: str) -> Newest | None:
         """The newest value of a topic."""
         sample = self._system.board.newest(topic)
-        return None if sample is None else Newest(*sample)
+        return None if sample is None else Newest(sample.value, sample.seq, sample.written_s)
 
     def events_after(self, seq: int) -> Sequence[tuple[int, Event]]:
         """Events with a sequence number above `seq`, oldest first."""

@@ -64,10 +64,11 @@ class JobRunner:
 
     def _load(self, job: Job) -> Mission:
         """The tree of a job with its ports."""
-        avoid = code_name(Avoidance(job.avoid))
+        avoid, parameters = code_name(Avoidance(job.avoid)), self._robot.surroundings.parameters
+        home = job.place if job.rectangle is None else job.rectangle.inside(*job.place, parameters.home_depth_m)
         own: dict[MotionCommand, dict[str, Any]] = {
-            MotionCommand.MOVETO: {"goal": job.place, "tolerance_m": self._robot.surroundings.parameters.tolerance_m},
-            MotionCommand.EXPLORE: {"home": job.place},
+            MotionCommand.MOVETO: {"goal": job.place, "tolerance_m": parameters.tolerance_m},
+            MotionCommand.EXPLORE: {"home": home},
             MotionCommand.INVESTIGATE: {"radius_m": job.radius_m, "turns": job.turns},
         }
         ports = {"avoid": avoid, "max_speed_mps": job.speed_mps, **own[job.kind]}

@@ -8,7 +8,7 @@ from typing import Any, cast
 from pluto_bt.blackboard import Publisher
 from pluto_bt.blackboard.codes import MotionCommand
 from pluto_bt.blackboard.inbox import Letter
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState
 from pluto_bt.modules.context import Context
 
 RELEASE = int(MotionCommand.RELEASE)
@@ -16,13 +16,7 @@ RELEASE = int(MotionCommand.RELEASE)
 
 def newest(context: Context, topic: str) -> Callable[[], Any]:
     """A fast way to ask for the newest value of a topic, None without one."""
-    read = context.board.reader(topic)
-
-    def value() -> Message | None:
-        sample = read()
-        return None if sample is None else sample.value
-
-    return cast(Callable[[], Any], value)
+    return cast(Callable[[], Any], context.board.value_reader(topic))
 
 
 class Link:

@@ -100,9 +100,12 @@ class Local:
         now = self.track.now
         phi, psi = now.tilt
         x, y, theta = now.pose_odom
-        self._dead_reckoning.put(Pose(now.stamp_s, (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_odom)), now_s)
-        x, y, theta = now.pose_map
-        self._pose.put(Pose(now.stamp_s, (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_map), self._box.set_by), now_s)
+        pose, nine = (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_odom)
+        self._dead_reckoning.put(Pose(now.stamp_s, pose, nine), now_s)
+        if now.pose_map is not now.pose_odom or now.covariance_map is not now.covariance_odom:  # else nobody has adjusted anything yet
+            x, y, theta = now.pose_map
+            pose, nine = (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_map)
+        self._pose.put(Pose(now.stamp_s, pose, nine, self._box.set_by), now_s)
 
     def _accept(self, source: str, post: Pose, now_s: float) -> None:
         """Adjust the track by a post. The setter is checked again here: it may have changed since the post was left."""

@@ -30,15 +30,17 @@ def shown(around: Surroundings, now_s: float) -> LocalMapState:
     """The map as a message."""
     map = around.map
     oldest_s = max(0.0, now_s - map.parameters.ground_memory_s) - 1e-3
-    cells = np.where(map.evidence < 0, FREE, UNKNOWN).astype(np.uint8)
-    is_covered = (map.covered != 0) & (map.evidence < 0)
-    cells[is_covered] = COVERED
-    cells[map.evidence > 0] = STANDS
-    cells[map.low_s > oldest_s] = LOW
-    rows, columns = np.flatnonzero(cells.any(axis=1)), np.flatnonzero(cells.any(axis=0))
+    is_known = (map.evidence != 0) | (map.low_s > oldest_s)
+    rows, columns = np.flatnonzero(is_known.any(axis=1)), np.flatnonzero(is_known.any(axis=0))
     if not len(rows):
         return LocalMapState(now_s, cell_m=map.cell_m)
-    cut = cells[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    cut = np.s_[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
+    is_free = map.evidence[cut] < 0
+    is_covered = (map.covered[cut] != 0) & is_free
+    cells = np.where(is_free, FREE, UNKNOWN).astype(np.uint8)
+    cells[is_covered] = COVERED
+    cells[map.evidence[cut] > 0] = STANDS
+    cells[map.low_s[cut] > oldest_s] = LOW
     x_m, y_m = (int(rows[0]) + map.i0) * map.cell_m, (int(columns[0]) + map.j0) * map.cell_m
     covered_m2 = float(np.count_nonzero(is_covered)) * map.cell_m**2
-    return LocalMapState(now_s, x_m, y_m, map.cell_m, cut.shape[0], cut.shape[1], cut.tobytes(), covered_m2)
+    return LocalMapState(now_s, x_m, y_m, map.cell_m, cells.shape[0], cells.shape[1], cells.tobytes(), covered_m2)

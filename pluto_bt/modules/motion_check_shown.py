@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from estimation.motion_check import MotionCheck
-from estimation.news import LOST, WHEELS_GRIP
+from estimation.news import FOUND, LOST, WHEELS_GRIP
 from estimation.track import Tilt
 from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import Arm
 from pluto_bt.skills.reasons import NO_POSE
+from pluto_bt.skills.scan_watch import are_same
 
 LEVEL_RAD = math.radians(2.0)  # a scan from a wrist or a robot that leans more also sees the ground
 FINE = (1.0, 0.0, True, False, False)
@@ -43,8 +42,7 @@ class MotionCheckShown:
             return  # a laser that repeats itself is no witness
         panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
         if max(abs(arm.tilt_rad), abs(tilt[0]), abs(tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
-            self._check.blind()
-            return
+            return  # and what the scan before it told still waits to be confirmed
         x, y = arm.pose_robot_laser[:2]
         self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))
 
@@ -59,7 +57,7 @@ class MotionCheckShown:
         """Findings to the events, the state to the topic."""
         check = self._check
         for word, text in check.news:
-            level = "error" if word == LOST else "info" if word == WHEELS_GRIP else "warning"
+            level = "error" if word == LOST else "info" if word in (WHEELS_GRIP, FOUND) else "warning"
             self._say(level, word, "local", text)
             self._word, self._text = word, text
             self._lost_text = text if word == LOST else self._lost_text
@@ -80,4 +78,4 @@ class MotionCheckShown:
 def _has_equal_half(before: FloatArray, now: FloatArray) -> bool:
     """True if the beams of one side are exactly those of the scan before."""
     half = len(now) // 2
-    return len(before) == len(now) and (np.array_equal(before[:half], now[:half]) or np.array_equal(before[half:], now[half:]))
+    return len(before) == len(now) and (are_same(before[:half], now[:half]) or are_same(before[half:], now[half:]))

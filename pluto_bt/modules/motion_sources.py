@@ -121,7 +121,7 @@ class MotionSources:
             return None, False, LEVEL
         state = sample.value
         if state.bias_radps != self._bias_radps:
-            self.check.turn.bias_moved(state.bias_radps - self._bias_radps)
+            self.check.bias_moved(state.bias_radps - self._bias_radps)
             self._bias_radps = state.bias_radps
         theta_rad = state.theta_rad + state.turn_rates_radps[2] * (stamp_s - state.stamp_s)
         return theta_rad, state.bias_known, (state.phi_rad, state.psi_rad)

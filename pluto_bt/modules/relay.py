@@ -39,8 +39,11 @@ class Relay(Generic[R]):
 
     def read(self) -> list[R]:
         """The good records since the last call."""
+        arrived = self._device.read()
+        if not arrived:
+            return []
         records: list[R] = []
-        for record in self._device.read():
+        for record in arrived:
             if isinstance(record, self._kind):
                 is_sane = isfinite(self._check(record))
                 if is_sane:

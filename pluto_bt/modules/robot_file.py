@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from msgspec.structs import replace
 
+from pluto_bt.gateway.limits import Limits
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.polygons import crossing, is_flat
 from pluto_bt.modules.alarms import AlarmsParameters
@@ -49,6 +50,7 @@ class RobotFile(Platform, frozen=True, kw_only=True, forbid_unknown_fields=True)
     marker: MarkerParameters = MarkerParameters()
     record: RecordParameters = RecordParameters()
     resume: ResumeParameters = ResumeParameters()
+    gateway: Limits = Limits()
 
 
 def load_robot_file(name: str, settings: Sequence[str] = (), named_at: Place | None = None, overlay: Path | None = None) -> RobotFile:

@@ -7,7 +7,11 @@ from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import newest
 from pluto_bt.record.entries import Link, Situation
 
-LINKS = {"motion": "motion/status", "avoidance": "avoidance/status", "drive": "drive/status", "filter": "filter/status"}
+LINKS = {
+    "motion": "motion/status", "avoidance": "avoidance/status", "drive": "drive/status", "filter": "filter/status",
+    "localisation": "Localization/Check",
+}  # fmt: skip
+RAW = "ATRV2/Drive/Raw"
 STILL_MPS, STILL_RADPS = 0.005, 0.005
 
 
@@ -17,7 +21,7 @@ class SituationWatch:
     def __init__(self, context: Context) -> None:
         self._context = context
         self._links = {name: newest(context, topic) for name, topic in LINKS.items()}
-        self._raw = newest(context, "ATRV2/Drive/Raw")
+        self._raw = newest(context, RAW)
         self._drive_command = newest(context, "drive/command")
         self._told: dict[str, tuple[FVectorState, Link]] = {}
 
@@ -28,9 +32,10 @@ class SituationWatch:
         links = {name: self._link(name, status) for name, read in self._links.items() if (status := read()) is not None}
         modules = {part.module.name: _trouble(part.state, part.fault, part.error) for part in system.parts if part.state != "running" or part.fault}
         raw, command = self._raw(), self._drive_command()
+        stale = self._context.board.stale(now_s)
         return Situation(
-            links=links, stale=self._context.board.stale(now_s), modules=modules, hold=("", "") if hold is None else (hold.word, hold.text),
-            moves=_is_moving(raw), wanted=isinstance(command, ActuatorState) and command.velocity != (0.0, 0.0),
+            links=links, stale=stale, modules=modules, hold=("", "") if hold is None else (hold.word, hold.text),
+            moves=RAW not in stale and _is_moving(raw), wanted=isinstance(command, ActuatorState) and command.velocity != (0.0, 0.0),
             mission=("", "") if activity is None else (activity.state, activity.reason),
             ended=("", "") if ended is None else (ended.reason, ended.text),
         )  # fmt: skip

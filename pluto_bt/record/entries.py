@@ -100,7 +100,7 @@ class Branch(msgspec.Struct, gc=False, omit_defaults=True):
 
 
 class Link(msgspec.Struct, frozen=True, gc=False, omit_defaults=True):
-    """What a link of the chain says."""
+    """What a link of the chain says, or localisation of its witnesses."""
 
     element: tuple[int, ...] = ()
     reason: str = ""
@@ -111,7 +111,7 @@ class Situation(msgspec.Struct, frozen=True, gc=False, omit_defaults=True):
     """What `why` looks at, at one moment. Two that are equal need not be told twice.
 
     Attributes:
-        links: motion, avoidance, drive, filter -> what it says.
+        links: motion, avoidance, drive, filter, localisation -> what it says.
         stale: topics that are too old -> the stamp of their last value (s).
         modules: those that do not run -> state and error.
         hold: the word and the text of a latched stop.

@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 
 from pluto_bt.record.entries import Link, Situation
 
+NO_TROUBLE = ("stopped", "stuck")
+AGAIN_NS = 3_000_000_000  # the same complaint so soon again is the same trouble: what tries again every second goes quiet meanwhile
+
 
 @dataclass(frozen=True)
 class Trouble:
@@ -22,7 +25,7 @@ class Trail:
 
     Attributes:
         since_ns: `link/drive`, `stale/sick/scan`, `module/avoid`, `hold`, `mission`, `moves`, `ended` -> when it became as it is.
-        troubles: motion, avoidance, drive, filter -> its last complaint that was not a stop.
+        troubles: motion, avoidance, drive, filter, localisation -> its last complaint; a stop is none, and that goto is stuck comes of one.
     """
 
     situation: Situation = field(default_factory=Situation)
@@ -46,11 +49,12 @@ class Trail:
 
     def _note(self, name: str, link: Link, t_ns: int) -> None:
         last = self.troubles.get(name)
-        is_trouble = bool(link.reason) and link.reason != "stopped"
+        is_trouble = bool(link.reason) and link.reason not in NO_TROUBLE
         if last is not None and last.until_ns is None and not (is_trouble and link.reason == last.link.reason):
             self.troubles[name] = last = Trouble(last.link, last.since_ns, t_ns)
         if is_trouble and (last is None or last.until_ns is not None):
-            self.troubles[name] = Trouble(link, t_ns)
+            is_again = last is not None and last.link.reason == link.reason and t_ns - (last.until_ns or 0) <= AGAIN_NS
+            self.troubles[name] = Trouble(link, last.since_ns if last is not None and is_again else t_ns)
 
 
 def _said(value: object) -> object:

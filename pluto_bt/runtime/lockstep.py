@@ -5,8 +5,8 @@ Due times are `start + k * period` in integer nanoseconds. A part that is woken 
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Callable, Sequence
+from heapq import heappop, heappush, heapreplace
 
 from pluto_bt.runtime.clock import VirtualClock
 from pluto_bt.runtime.supervision import Part, Waker
@@ -31,7 +31,7 @@ class Lockstep:
         now_ns = self._clock.now_ns()
         for row, part in enumerate(self.parts):
             if part.period_ns:
-                heapq.heappush(self._due, (now_ns, row, False))
+                heappush(self._due, (now_ns, row, False))
 
     def waker(self, row: int) -> Waker:
         """What to call so that the part of this row steps now."""
@@ -40,26 +40,28 @@ class Lockstep:
             if not self._is_woken[row] and self._wakes_now < WAKES_AT_ONE_TIME:
                 self._is_woken[row] = True
                 self._wakes_now += 1
-                heapq.heappush(self._due, (self._clock.now_ns(), row, True))
+                heappush(self._due, (self._clock.now_ns(), row, True))
 
         return wake
 
     def run_until(self, end_ns: int, keep_going: Callable[[], bool] = lambda: True) -> None:
         """Step whatever is due up to `end_ns`; `keep_going` is asked each time the clock is about to move."""
         due, parts, clock, woken = self._due, self.parts, self._clock, self._is_woken
+        now_ns = clock.now_ns()
         while due and due[0][0] <= end_ns:
             at_ns, row, is_wake = due[0]
-            if at_ns > clock.now_ns():
+            if at_ns > now_ns:
                 if not keep_going():
                     return
                 clock.jump_to(at_ns)
+                now_ns = at_ns
                 self._wakes_now = 0
             part = self.current = parts[row]
             if is_wake:
-                heapq.heappop(due)
+                heappop(due)
                 woken[row] = False
             else:
-                heapq.heapreplace(due, (at_ns + part.period_ns, row, False))
+                heapreplace(due, (at_ns + part.period_ns, row, False))
             self.turns += 1
             part.step(at_ns)
         self.current = None

@@ -55,6 +55,7 @@ class Part:
         self._handed: deque[Callable[[], None]] = deque()  # what others want done between two steps
         self._back_off_ns = FIRST_BACK_OFF_NS
         self._budget_ns = round(module.budget_ms * 1e6)
+        self._notable_ns = 0  # a step that takes longer is the worst so far, or over budget
         self.period_ns = module.period_ns
 
     def start(self, now_ns: int) -> None:
@@ -96,7 +97,11 @@ class Part:
             self.stepped_ns = now_ns
         except Exception as error:
             self._fail(now_ns, error)
-        self._account(wall_ns() - began_ns)
+        took_ns = wall_ns() - began_ns
+        self.steps += 1
+        self.total_ns += took_ns
+        if took_ns > self._notable_ns:
+            self._note_slow(took_ns)
         if self.slow_ns:
             self.resume_at_ns = now_ns + self.slow_ns
 
@@ -108,13 +113,12 @@ class Part:
         else:
             self.stop()
 
-    def _account(self, took_ns: int) -> None:
-        self.steps += 1
-        self.total_ns += took_ns
-        if took_ns > self.worst_ns and self.steps > 1:  # the first step pays for imports and caches
-            self.worst_ns = took_ns
-        if took_ns > self._budget_ns and self.steps > 1:
-            self.overruns += 1
+    def _note_slow(self, took_ns: int) -> None:
+        """The slowest step so far, or one over budget. The first step does not count: it pays for imports and caches."""
+        if self.steps > 1:
+            self.worst_ns = max(self.worst_ns, took_ns)
+            self.overruns += took_ns > self._budget_ns
+            self._notable_ns = min(self.worst_ns, self._budget_ns)
 
     def _fail(self, now_ns: int, error: Exception) -> None:
         self.failures += 1

@@ -1,4 +1,4 @@
-"""Who comes nearer: echoes that shorten round by round faster than the robot's own motion can explain. Frame: dead reckoning."""
+"""Who comes nearer or walks away: echoes that change round by round faster than the robot's own motion can explain. Frame: dead reckoning."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from pluto_bt.skills.sonar import Mask, SonarRing
 ROUNDS = 4
 HEAR_M = 3.0
 NEARER_M = 0.12  # over the rounds: four sigma of a difference of two echoes, and 0.4 m/s
-EVENLY = 0.6  # of the whole, at most, in one round: what comes into a cone from its side comes in one leap
+EVENLY = 0.6  # of the whole, at most, in one round: what comes into a cone from its side comes in one leap, as a post does beside which we drive
 SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands across the way
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
 TURNING_M = 0.06
+FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
 LONGEST_S = 0.7  # older rounds do not belong to the same approach
 
 
@@ -28,28 +29,28 @@ class Approach:
         self._ring = ring
         self._rounds: list[tuple[Array, Planar, float]] = []
 
-    def look(self, ranges_m: Array, robot: Planar, stamp_s: float) -> Array:
-        """Take a round, heard from `robot`.
+    def look(self, ranges_m: Array, robot: Planar, stamp_s: float, came: Mask) -> Array:
+        """Take a round, heard from `robot`; `came`: (k,) whose echo comes from where a moment ago all was free.
 
-        Returns: (n, 3) x m, y m and how far beside that, for each transducer that hears somebody come.
+        Returns: (n, 3) x m, y m and how far beside that, for each transducer that hears somebody come or go.
         """
         self._rounds = [*self._rounds[1 - ROUNDS :], (ranges_m, robot, stamp_s)]
         first_m, _, first_s = self._rounds[0]
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
-        near = (ranges_m < HEAR_M) & (first_m - ranges_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
-        return self._steady(near) if near.any() else NOTHING
+        near = (ranges_m < HEAR_M) & (np.abs(first_m - ranges_m) > NEARER_M) & (ranges_m > self._ring.min_range_m)
+        return self._those_who_walk(near, came) if near.any() or came.any() else NOTHING
 
-    def _steady(self, near: Mask) -> Array:
-        """Those of the near ones that came evenly, own motion taken off."""
+    def _those_who_walk(self, near: Mask, came: Mask) -> Array:
+        """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came."""
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
-        came = came_evenly(heard_m, places, axes, near, half_rad)
-        if not came.any():
+        moved = walked(heard_m, places, axes, near, half_rad) | came
+        if not moved.any():
             return NOTHING
         x, y, theta = places[-1].tolist()
-        c, s, which, ranges_m = math.cos(theta), math.sin(theta), np.flatnonzero(came), heard_m[-1][came]
+        c, s, which, ranges_m = math.cos(theta), math.sin(theta), np.flatnonzero(moved), heard_m[:, moved].min(axis=0)
         axis_rad = theta + axes[which, 2]
         apex_x, apex_y = x + c * axes[which, 0] - s * axes[which, 1], y + s * axes[which, 0] + c * axes[which, 1]
         ends = (apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad))
@@ -57,30 +58,38 @@ class Approach:
 
 
 @kernel
-def came_evenly(heard_m: Array, places: Array, axes: Array, near: Mask, half_cone_rad: float) -> Mask:
-    """(k,) which of the `near` transducers hear something come that the robot's own motion does not explain.
+def walked(heard_m: Array, places: Array, axes: Array, near: Mask, half_cone_rad: float) -> Mask:
+    """(k,) which of the `near` transducers hear something come or go that the robot's own motion does not explain.
 
     Args:
         heard_m: (rounds, k). places: (rounds, 3) of the robot. axes: (k, 3) of the transducers, robot frame.
     """
     rounds, count = heard_m.shape
-    came = np.zeros(count, dtype=np.bool_)
+    found = np.zeros(count, dtype=np.bool_)
     swept_rad = abs(places[rounds - 1, 2] - places[0, 2])
     for k in range(count):
         if not near[k]:
             continue
-        total_m, most_m = 0.0, -math.inf
+        first_m, second_m, last_m = heard_m[0, k], heard_m[1, k], heard_m[rounds - 1, k]
+        comes = last_m < first_m
+        total_m, most_m, moved_m = 0.0, -math.inf, 0.0
         for r in range(1, rounds):
-            step_m = heard_m[r - 1, k] - heard_m[r, k] - own_m(places, axes, r, k, half_cone_rad)
-            total_m, most_m = total_m + step_m, max(most_m, step_m)
-        sweeps_m = min(heard_m[rounds - 1, k], HEAR_M) * swept_rad
-        came[k] = total_m > NEARER_M and most_m < EVENLY * total_m and sweeps_m < TURNING_M
-    return came
+            way_m, nearer_m = own_m(places, axes, r, k, half_cone_rad)
+            step_m = heard_m[r - 1, k] - heard_m[r, k] - nearer_m if comes else heard_m[r, k] - heard_m[r - 1, k] - FARTHER * way_m
+            total_m, most_m, moved_m = total_m + step_m, max(most_m, step_m), moved_m + way_m
+        sweeps_m = min(last_m, HEAR_M) * swept_rad
+        if moved_m + sweeps_m < STANDING_M:
+            gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
+            found[k] = gap_m > NEARER_M
+        else:
+            is_even = total_m > NEARER_M and most_m < EVENLY * total_m
+            found[k] = is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M
+    return found
 
 
 @inline_kernel
-def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> float:
-    """How much nearer what stands can have come to a transducer by the robot's own step to round r; infinite where that cannot be said."""
+def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> tuple[float, float]:
+    """The way of a transducer in the robot's step to round r, and how much nearer what stands can have come by it; infinite if nobody can say."""
     c0, s0, c1, s1 = math.cos(places[r - 1, 2]), math.sin(places[r - 1, 2]), math.cos(places[r, 2]), math.sin(places[r, 2])
     dx = places[r, 0] - places[r - 1, 0] + (c1 - c0) * axes[k, 0] - (s1 - s0) * axes[k, 1]
     dy = places[r, 1] - places[r - 1, 1] + (s1 - s0) * axes[k, 0] + (c1 - c0) * axes[k, 1]
@@ -89,7 +98,7 @@ def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> f
     aside_rad = abs(math.atan2(math.sin(off_rad), math.cos(off_rad)))
     edge_rad = min(aside_rad + half_cone_rad, WIDEST_RAD)
     known = edge_rad < WIDEST_RAD or way_m < STANDING_M / ROUNDS
-    return SLANT * way_m / math.cos(edge_rad) if known else math.inf
+    return way_m, SLANT * way_m / math.cos(edge_rad) if known else math.inf
 
 
 NOTHING: Array = np.zeros((0, 3))

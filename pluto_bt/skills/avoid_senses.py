@@ -16,7 +16,7 @@ class AvoidSenses(NamedTuple):
     """What avoidance knows at a step; None = missing or too old. Poses are x m, y m, theta rad.
 
     `pose` is interface 3, `dead` interface 0, `raw_heading_rad` that of ATRV2/Drive/Raw, `twist` the velocities in force,
-    `waits_for_walker`: the stop filter holds the robot back because of somebody; `no_pose`: why there is no `pose`.
+    `waits_for_walker`: the stop filter holds the robot back because of somebody, or did so just now; `no_pose`: why there is no `pose`.
     """
 
     pose: Planar | None

@@ -11,12 +11,13 @@ from pluto_bt.blackboard.messages import ActuatorState, BumperState, LaserScan, 
 from pluto_bt.maps.platform import Laser, Platform, Sonar
 from pluto_bt.skills.approach import Approach
 from pluto_bt.skills.filter_parameters import FilterParameters
-from pluto_bt.skills.outline import Outline, Planar
+from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.scan_watch import ScanWatch
+from pluto_bt.skills.seen_kernels import CAME, SUDDEN
 from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
-from pluto_bt.skills.walkers import WalkerWatch
+from pluto_bt.skills.walkers import ANYWHERE, WalkerWatch
 
 
 class FilterSenses(NamedTuple):
@@ -44,11 +45,11 @@ class FilterEyes:
         self._parameters = p = parameters
         laser, sonar = platform.devices.laser, platform.devices.sonar
         self._eye = _Eye(laser, p) if laser else None
-        self._ear = _Ear(sonar, outline, p) if sonar else None
+        self._ear = _Ear(sonar, outline, p, laser is None) if sonar else None
         reach_m = window_m if laser else max(window_m, p.hear_m)
         self.space = SeenSpace(outline, reach_m + BEHIND_M, p.hear_m, max(0.0, p.obstacle_memory_s - p.fleeting_memory_s))
         self.walkers = WalkerWatch(p.walker_memory_s)
-        self._has_begun = False
+        self._begun_s: float | None = None
 
     @property
     def has_laser(self) -> bool:
@@ -63,13 +64,22 @@ class FilterEyes:
             self._eye.take(senses, space, self.walkers)
         if self._ear is not None:
             self._ear.take(now_s, senses, space, self.walkers)
-        space.stand(robot, 0.0 if self._has_begun else p.assumed_clear_m, now_s, now_s - p.obstacle_memory_s, window_m)
-        self._has_begun = True
+        space.stand(robot, p.assumed_clear_m if self._begun_s is None else 0.0, now_s, now_s - p.obstacle_memory_s, window_m)
+        self._begun_s = now_s if self._begun_s is None else self._begun_s
 
     def forget(self) -> None:
         """Nothing and nobody was ever seen."""
         self.space.forget()
         self.walkers.forget()
+
+    def people(self, now_s: float) -> Array:
+        """Where somebody may be, as `WalkerWatch.rows`. A robot without a laser sees none of those beside who is heard: where one walks, others may,
+        and so may who started it a moment ago.
+        """
+        rows = self.walkers.rows(now_s)
+        is_new = self._begun_s is not None and now_s - self._begun_s < self._parameters.starter_s
+        is_anywhere = is_new or (self._eye is None and self.walkers.is_anybody_about(now_s))
+        return np.vstack((rows, ANYWHERE)) if is_anywhere else rows
 
     def hears(self, now_s: float) -> bool:
         """Whether the sonar, where there is one, can be trusted."""
@@ -101,7 +111,9 @@ class _Eye:
 class _Ear:
     """The sonar ring."""
 
-    def __init__(self, sonar: Sonar, outline: Outline, parameters: FilterParameters) -> None:
+    def __init__(self, sonar: Sonar, outline: Outline, parameters: FilterParameters, is_alone: bool) -> None:
+        """`is_alone`: no laser will tell in a moment what was heard."""
+        self._is_alone = is_alone
         self._sonar, self._stale_s = sonar, parameters.sonar_stale_s
         self._ring = ring = SonarRing(sonar, outline)
         self._approach = Approach(ring)
@@ -121,5 +133,8 @@ class _Ear:
             self._heard = None
             space.drop_echoes()
             return
-        space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
-        walkers.take_echoes(self._approach.look(ranges_m, at, sonar.stamp_s), sonar.stamp_s)
+        news = space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
+        found = self._approach.look(ranges_m, at, sonar.stamp_s, news == CAME)
+        walkers.take_echoes(found, sonar.stamp_s)
+        if self._is_alone and (len(found) or (news == SUDDEN).any()):
+            walkers.doubt(sonar.stamp_s)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pluto_bt.blackboard.codes import GotoStatus
+from pluto_bt.blackboard.codes import Avoidance, GotoStatus, split_flags
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.avoid_parameters import AvoidParameters
@@ -65,6 +65,8 @@ class Goto:
         self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=turn_radps)
         self._goal = command.position
         self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
+        kind = split_flags(command.flags)
+        self._sees = kind is not None and kind[0] is not Avoidance.NONE
         self._tolerance_m = command.acceleration[0] if command.acceleration[0] > 0.0 else p.goto_tolerance_m
         self.status = GotoStatus.RUNNING
         self._best_m = self._best_rad = math.inf
@@ -158,14 +160,15 @@ class Goto:
         return min(speed_mps, max(ARRIVAL_MPS, math.sqrt(2.0 * brake_mps2 * to_goal_m)))
 
     def _is_wedged(self, steering: Steering, now_s: float, odometry: Planar) -> bool:
-        """Begin to back where neither driving nor turning helps, if the ground behind has just been driven over."""
+        """Begin to back where neither driving nor turning helps, if the ground behind has just been driven over. With A = 0 it goes straight or not
+        at all."""
         self._driven = [*self._driven[-80:], odometry]
         sees_why = steering.free_m <= WEDGED_M and abs(steering.heading_rad) <= math.radians(10.0)
         is_held = now_s - max(self._came_s, self._braked_s) > HELD_S
         if not is_held and (not sees_why or now_s - self._moved_s < 1.0):
             return False
         came_m = max(math.hypot(odometry[0] - x, odometry[1] - y) for x, y, _ in self._driven)
-        if self.limits.min_turn_radius_m > 0.0 or came_m < self.parameters.back_off_m or self.parameters.back_off_m <= 0.0:
+        if not self._sees or self.limits.min_turn_radius_m > 0.0 or came_m < self.parameters.back_off_m or self.parameters.back_off_m <= 0.0:
             return False
         self._back_from, self._moved_s, self._came_s = (odometry, now_s), now_s, now_s
         return True

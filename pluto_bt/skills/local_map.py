@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
-from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, along_line, clearances, mark_ground, mark_level, under_points
+from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 
@@ -42,6 +43,7 @@ class LocalMap:
         self.far_cells = parameters.wide_half_width_m / self.cell_m
         n = math.ceil(HERE_M / self.cell_m)
         self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
+        self._fan = Fan()
         self.forget((0.0, 0.0, 0.0))
 
     def forget(self, middle: Planar) -> None:
@@ -52,6 +54,7 @@ class LocalMap:
         self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
         self._touched: Counts = np.zeros((CELLS, CELLS), dtype=np.int32)
+        self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
         self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
         self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
@@ -80,11 +83,9 @@ class LocalMap:
         """Distance from a point to the nearest thing that stands, at most `wide_half_width_m`."""
         return float(self.clearance[self.cell(x_m, y_m)]) * self.cell_m
 
-    def cells(self, points: Array) -> tuple[Indices, Indices]:
-        """The cells of points (n, 2), as indices of a grid; the nearest one of the edge for points outside."""
-        i = np.floor(points[:, 0] / self.cell_m).astype(np.intp) - self.i0
-        j = np.floor(points[:, 1] / self.cell_m).astype(np.intp) - self.j0
-        return np.clip(i, 0, CELLS - 1), np.clip(j, 0, CELLS - 1)
+    def is_seen_free(self, points: Array) -> bool:
+        """Whether the cells of all points (n, 2) were seen free; of points outside the nearest cell of the edge."""
+        return all_free(self.evidence, points, self.cell_m, self.i0, self.j0)
 
     def clearances_m(self, points: Array) -> Array:
         """`clearance_m` of points (n, 2)."""
@@ -110,7 +111,7 @@ class LocalMap:
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
         """
         self._follow(laser)
-        angles: Array = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m), dtype=np.float64)
+        angles, _, _ = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
         x, y = self.place(laser[0], laser[1])
         cell = self.cell_m
         if abs(tilt_rad) < LEVEL_RAD:
@@ -140,6 +141,7 @@ class LocalMap:
         self.refresh(0.0)
         self.clearances_m(np.zeros((1, 2)))
         self.clearances_between_m((0.0, 0.0), (1.0, 0.0))
+        self.is_seen_free(np.zeros((1, 2)))
         self.forget((0.0, 0.0, 0.0))
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
@@ -181,9 +183,12 @@ class LocalMap:
         low_i, low_j, high_i, high_j = self._window
         i0, j0 = max(0, math.floor(low_i) - 2 * keep), max(0, math.floor(low_j) - 2 * keep)
         i1, j1 = min(CELLS, math.ceil(high_i) + 2 * keep), min(CELLS, math.ceil(high_j) + 2 * keep)
-        oldest_s = max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
-        clearances(self.evidence, self.low_s, oldest_s, i0, i1, j0, j1, self.clearance, keep, self.far_cells)
         self._window = None
+        oldest_s = max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
+        i0, i1, j0, j1 = changes(self.evidence, self.low_s, oldest_s, self._stands, i0, i1, j0, j1)
+        if i0 < i1:  # mostly a few cells, or none
+            i0, i1, j0, j1 = max(0, i0 - 2 * keep), min(CELLS, i1 + 2 * keep), max(0, j0 - 2 * keep), min(CELLS, j1 + 2 * keep)
+            clearances(self.evidence, self.low_s, oldest_s, i0, i1, j0, j1, self.clearance, keep, self.far_cells)
 
     def _changed(self, i: float, j: float, reach_m: float) -> None:
         reach = reach_m / self.cell_m
@@ -200,7 +205,7 @@ class LocalMap:
         if not (shift_i or shift_j):
             return
         for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
-                            (self.clearance, self.far_cells)):  # fmt: skip
+                            (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
             _shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
         self._window = None

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.kernel import inline_kernel, kernel
 
 Array = NDArray[np.float64]
 Bytes = NDArray[np.int8]
@@ -24,6 +24,7 @@ LEVEL, STANDS, HOLE = 1, 2, 3  # what a beam that looks down may find
 AGAIN_S, FORGOTTEN_S = 0.4, 6.0  # what lies low has to be seen again in the same cell: who walks has gone on by then
 TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
 SAMPLE = 0.7  # cells between two samples of a beam
+ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middle of one to that of the next
 
 
 @kernel
@@ -116,6 +117,25 @@ def mark_ground(
 
 
 @kernel
+def changes(
+    evidence: Bytes, low_s: Floats, oldest_s: float, stands: Bytes, i0: int, i1: int, j0: int, j1: int
+) -> tuple[int, int, int, int]:  # fmt: skip
+    """Bring `stands` (1 = something stands there, or lies low) up to date in the window [i0, i1) x [j0, j1).
+
+    Returns: the smallest window that holds all that changed, i0, i1, j0, j1; with i0 >= i1 if nothing did.
+    """
+    first_i, last_i, first_j, last_j = evidence.shape[0], 0, evidence.shape[1], 0
+    for i in range(i0, i1):
+        for j in range(j0, j1):
+            is_there = evidence[i, j] > 0 or low_s[i, j] > oldest_s
+            if is_there != (stands[i, j] != 0):
+                stands[i, j] = 1 if is_there else 0
+                first_i, last_i = min(first_i, i), max(last_i, i + 1)
+                first_j, last_j = min(first_j, j), max(last_j, j + 1)
+    return first_i, last_i, first_j, last_j
+
+
+@kernel
 def clearances(
     evidence: Bytes, low_s: Floats, oldest_s: float, i0: int, i1: int, j0: int, j1: int, out: Floats, keep: int, most: float
 ) -> None:  # fmt: skip
@@ -125,26 +145,32 @@ def clearances(
     """
     rows, columns = i1 - i0, j1 - j0
     near = np.full((rows + 2, columns + 2), np.float32(most))
-    diagonal = np.float32(1.4142)
-    one = np.float32(1.0)
     for a in range(1, rows + 1):
-        for b in range(1, columns + 1):
-            i, j = i0 + a - 1, j0 + b - 1
-            if evidence[i, j] > 0 or low_s[i, j] > oldest_s:
-                near[a, b] = 0.0
-            else:
-                near[a, b] = min(
-                    min(near[a, b], near[a - 1, b] + one), min(near[a, b - 1] + one, min(near[a - 1, b - 1], near[a - 1, b + 1]) + diagonal)
-                )
+        row, stands, low = near[a, 1 : columns + 1], evidence[i0 + a - 1, j0:j1], low_s[i0 + a - 1, j0:j1]
+        for b in range(columns):
+            if stands[b] > 0 or low[b] > oldest_s:
+                row[b] = 0.0
+        spread_over(row, near[a - 1])
+        for b in range(1, columns):
+            row[b] = min(row[b], row[b - 1] + ACROSS)
     for a in range(rows, 0, -1):
-        for b in range(columns, 0, -1):
-            value = min(near[a, b], min(near[a + 1, b] + one, min(near[a, b + 1] + one, min(near[a + 1, b + 1], near[a + 1, b - 1]) + diagonal)))
-            near[a, b] = value
+        row = near[a, 1 : columns + 1]
+        spread_over(row, near[a + 1])
+        for b in range(columns - 2, -1, -1):
+            row[b] = min(row[b], row[b + 1] + ACROSS)
     first_i, last_i = 0 if i0 == 0 else keep, rows if i1 == evidence.shape[0] else rows - keep
     first_j, last_j = 0 if j0 == 0 else keep, columns if j1 == evidence.shape[1] else columns - keep
     for a in range(first_i, last_i):
         for b in range(first_j, last_j):
             out[i0 + a, j0 + b] = near[a + 1, b + 1]
+
+
+@inline_kernel
+def spread_over(row: Floats, beside: Floats) -> None:
+    """Carry the distances of the row `beside`, which has a cell more at both ends, over to a row. Not along it: so the loop is vectorised."""
+    before, at, after = beside[:-2], beside[1:-1], beside[2:]
+    for b in range(row.shape[0]):
+        row[b] = min(min(row[b], at[b] + ACROSS), min(before[b], after[b]) + DIAGONALLY)
 
 
 @kernel
@@ -167,4 +193,28 @@ def under_points(grid: Floats, points: Array, cell_m: float, i0: int, j0: int) -
     for k in range(points.shape[0]):
         at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
         out[k] = grid[min(max(at_i, 0), most), min(max(at_j, 0), most)]
+    return out
+
+
+@kernel
+def all_free(evidence: Bytes, points: Array, cell_m: float, i0: int, j0: int) -> bool:
+    """Whether all cells under points (n, 2) in metres were seen free; beyond the edge the nearest cell."""
+    most = evidence.shape[0] - 1
+    for k in range(points.shape[0]):
+        at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
+        if evidence[min(max(at_i, 0), most), min(max(at_j, 0), most)] >= 0:
+            return False
+    return True
+
+
+@kernel
+def under_places(grid: Floats, points: Array, origin: tuple[float, float, float], cell_m: float) -> Array:
+    """The cells under points (n, 2) in metres, as lengths, of a grid that lies as `maps.raster.Frame` says; 0 beyond its edge."""
+    out = np.zeros(points.shape[0])
+    c, s, size_m = math.cos(origin[2]), math.sin(origin[2]), np.float32(cell_m)
+    for k in range(points.shape[0]):
+        dx, dy = points[k, 0] - origin[0], points[k, 1] - origin[1]
+        row, column = (c * dy - s * dx) / cell_m, (c * dx + s * dy) / cell_m
+        if 0.0 <= row < grid.shape[0] and 0.0 <= column < grid.shape[1]:
+            out[k] = grid[int(row), int(column)] * size_m
     return out

@@ -23,6 +23,7 @@ class MotionParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     near_goal_m: Annotated[Positive, Meta(description="from this distance on, with a free way, moveto is a simple goto")] = 4.0
     tolerance_m: Annotated[Positive, Meta(description="distance at which a goal counts as reached")] = 0.3
     edge_m: Annotated[NotNegative, Meta(description="paths keep so far inside the rectangle")] = 0.5
+    home_depth_m: Annotated[NotNegative, Meta(description="home lies on the edge: explore comes home to so far inside of it")] = 0.2
     opening_m: Annotated[Positive, Meta(description="a side that lies so much deeper than before is an opening")] = 4.0
     ground_look_m: Annotated[Positive, Meta(description="how far a scan that looks down is believed about the ground")] = 6.0
     ground_step_m: Annotated[Positive, Meta(description="smallest step up or down that is an obstacle")] = 0.08

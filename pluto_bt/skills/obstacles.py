@@ -10,23 +10,28 @@ from numpy.typing import NDArray
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.kernel import kernel
 from pluto_bt.skills.avoid_parameters import AvoidParameters
+from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.lone_beams import believed_ends
 from pluto_bt.skills.movers import Mask, Movers, came_closer
 from pluto_bt.skills.outline import Array, Planar
 
 X, Y, MARGIN, SINCE, VX, VY = range(6)  # columns of the memory
 FIELD_EDGE_RAD = math.radians(1.0)  # memory this near the edge of the field of view is kept: the edge beam may just miss it
-LONE_STEP_M = 0.3  # a single beam so much shorter than both neighbours needs the scan before to confirm it
 HEARD_THROUGH_M = 0.4  # an echo so much farther says that nothing is where one was before
 APEX_M = 0.06  # an echo from nearer than the ring can tell was put so near to its transducer
 FORETELL_S = 1.0  # what moves is thought to go on for so long after it was seen
 
 
 class Obstacles:
-    """The memory. Points leave it when the laser looks where they were, when they are old, and when they are far."""
+    """The memory. Points leave it when the laser looks where they were, when they are old, and when they are far.
+
+    Attributes: `first_echo`: from this number on, the points given last by `around` were heard and not seen.
+    """
 
     def __init__(self, parameters: AvoidParameters) -> None:
         self.parameters = parameters
         self.reach_m = parameters.reach_m
+        self._fan = Fan()
         self.forget()
 
     def forget(self) -> None:
@@ -34,6 +39,7 @@ class Obstacles:
         self._seen = np.zeros((0, 6))  # the newest scan
         self._kept = np.zeros((0, 6))  # what left the field of view
         self._echoes = np.zeros((0, 6))  # what the sonar heard and the laser does not say better
+        self.first_echo = 0
         self._movers = Movers()
         self._last_ranges_m: Array | None = None
         self._last_pose: Planar = (0.0, 0.0, 0.0)
@@ -46,19 +52,19 @@ class Obstacles:
             z_m, tilt_rad: height of the laser above the ground, and how far it looked down.
         """
         p, ranges = self.parameters, scan.ranges_m
-        angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(ranges))
-        near = (ranges > 0.0) & (ranges < self.reach_m + 1.0) & ~self._is_lone(ranges)  # NaN compares False
+        _, cos, sin = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(ranges))
+        near = (ranges > 0.0) & (ranges < self.reach_m + 1.0) & (believed_ends(ranges, self._last_ranges_m, True) > 0.0)  # NaN compares False
         if tilt_rad:
-            height_m = z_m - ranges * np.cos(angles) * math.sin(tilt_rad)
-            near &= height_m > 0.05  # the rest is the ground
-        r, bearing = ranges[near], angles[near]
-        x, y = r * np.cos(bearing) * math.cos(tilt_rad), r * np.sin(bearing)
+            near &= z_m - ranges * cos * math.sin(tilt_rad) > 0.05  # the rest is the ground
+        beams = near.nonzero()[0]
+        r = ranges[beams]
         seen = np.zeros((len(r), 6))
-        _place(x, y, laser, seen)
+        _place(r * cos[beams] * math.cos(tilt_rad), r * sin[beams], laser, seen)
         seen[:, SINCE] = scan.stamp_s
-        moved = self._has_moved(ranges, near, laser, scan)
-        moves, seen[:, VX:] = self._movers.velocities(seen[:, :MARGIN], np.flatnonzero(near), moved, scan.stamp_s)
-        seen[:, MARGIN] = np.where(moves, p.moving_margin_m, p.margin_m)
+        moved = self._has_moved(ranges, near, len(beams), laser, scan)
+        moves, seen[:, VX:] = self._movers.velocities(seen[:, :MARGIN], beams, moved, scan.stamp_s)
+        seen[:, MARGIN] = p.margin_m
+        seen[moves, MARGIN] = p.moving_margin_m
         self._keep_what_left_the_field(laser, scan, now_s)
         self._seen = seen
         self._last_ranges_m, self._last_pose = (ranges if tilt_rad == 0.0 else None), laser
@@ -83,27 +89,17 @@ class Obstacles:
 
     def around(self, robot: Planar, with_laser: bool, with_sonar: bool, now_s: float, beyond_m: float = 0.0) -> Array:
         """(n, 5) x, y, margin, velocity x, y in the robot frame, of all that is remembered nearer than the reach and `beyond_m`."""
-        parts = [self._seen, self._kept] if with_laser else []
-        if with_sonar:
-            parts.append(self._echoes)
-        if not parts:
-            return np.zeros((0, 5))
-        return _seen_from(np.concatenate(parts), robot[0], robot[1], robot[2], now_s, self.reach_m + beyond_m)
+        reach_m = self.reach_m + beyond_m
+        seen = np.concatenate((self._seen, self._kept)) if with_laser else self._echoes[:0]
+        points = _seen_from(seen, robot[0], robot[1], robot[2], now_s, reach_m)
+        self.first_echo = len(points)
+        if not with_sonar or not len(self._echoes):
+            return points
+        return np.concatenate((points, _seen_from(self._echoes, robot[0], robot[1], robot[2], now_s, reach_m)))
 
-    def _is_lone(self, ranges: Array) -> Mask:
-        """Single short beams that the scan before does not confirm: dazzle, rain, a leaf."""
-        beyond = np.concatenate(([np.inf], ranges, [np.inf]))  # the beams at the edges have one neighbour
-        lone = np.minimum(beyond[:-2], beyond[2:]) - ranges > LONE_STEP_M
-        if lone.any() and self._last_ranges_m is not None and len(self._last_ranges_m) == len(ranges):
-            before = self._last_ranges_m
-            for i in np.flatnonzero(lone).tolist():
-                lone[i] = not np.any(np.abs(before[max(0, i - 4) : i + 5] - ranges[i]) < LONE_STEP_M)
-        return lone
-
-    def _has_moved(self, ranges: Array, near: Mask, laser: Planar, scan: LaserScan) -> Mask:
+    def _has_moved(self, ranges: Array, near: Mask, count: int, laser: Planar, scan: LaserScan) -> Mask:
         """Which of the near points stand where the scan before looked through: somebody walked there."""
         before = self._last_ranges_m
-        count = int(np.count_nonzero(near))
         if before is None or len(before) != len(ranges):
             return np.zeros(count, dtype=bool)
         return came_closer(ranges, near, before, laser, self._last_pose, scan.angle_min_rad, scan.angle_step_rad, count)

@@ -10,7 +10,7 @@ import numpy as np
 from pluto_bt.maps.raster import OCCUPIED, Frame, drawn, frame_of
 from pluto_bt.maps.world import World
 from pluto_bt.skills.local_map import Cell
-from pluto_bt.skills.map_kernels import Floats, clearances
+from pluto_bt.skills.map_kernels import Floats, clearances, under_places
 from pluto_bt.skills.outline import Array
 
 KNOWN_M = 0.3  # what is seen so near to what the map shows is the same thing
@@ -75,8 +75,9 @@ class PlanMap:
 
     def clearances_m(self, points: Array) -> Array:
         """Distance to what stands, at points (n, 2) of the map; 0 beyond its edge."""
-        cells = np.floor(self.frame.to_cells(points)).astype(np.intp)
-        inside = (cells >= 0).all(axis=1) & (cells[:, 0] < self.frame.rows) & (cells[:, 1] < self.frame.columns)
-        out = np.zeros(len(points))
-        out[inside] = self.clearance[cells[inside, 0], cells[inside, 1]] * self.frame.cell_m
-        return out
+        return under_places(self.clearance, np.ascontiguousarray(points), self.frame.origin, self.frame.cell_m)
+
+
+def warm() -> None:
+    """Compile what asks a map, so that no plan waits for it; all else the local map has compiled already."""
+    under_places(np.zeros((1, 1), dtype=np.float32), np.zeros((1, 2)), (0.0, 0.0, 0.0), 1.0)

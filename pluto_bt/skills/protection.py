@@ -1,4 +1,4 @@
-"""Laser protection: how much of a motion is allowed before what the laser sees, and why not all of it."""
+"""Protection: how much of a motion is allowed before what laser and sonar know of, and why not all of it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.limits import STILL, Limits, Twist
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.sight import Sight
-from pluto_bt.skills.sonar import where_word
+from pluto_bt.skills.sonar import sonar_code, where_word
 from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -79,8 +79,10 @@ class Protection:
 
     def _seen(self, points: Array, which: int) -> Verdict:
         x_m, y_m = points[which, :2].tolist()
-        text = f"obstacle {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
-        return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, text)
+        text = f"{self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
+        if self._sight.is_echo(which):
+            return Verdict(sonar_code(x_m, y_m, self._outline), reasons.SONAR, f"echo {text}")
+        return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, f"obstacle {text}")
 
 
 def _differs(a: Twist, b: Twist) -> bool:

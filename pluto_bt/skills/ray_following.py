@@ -130,9 +130,7 @@ class RayFollowing:
 
     def _knows_the_way(self) -> bool:
         """True if all of the way has been seen: then openings do not matter."""
-        if not self._way.leads_there:
-            return False
-        return bool((self._map.evidence[self._map.cells(self._way.points)] < 0).all())
+        return self._way.leads_there and self._map.is_seen_free(self._way.points)
 
 
 def is_done(way: Way, robot: Planar, cell_m: float) -> bool:

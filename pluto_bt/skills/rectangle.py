@@ -11,11 +11,15 @@ ON_THE_EDGE_M = 0.3  # a pose is not known better: so near the edge still counts
 
 
 class Rectangle(NamedTuple):
-    """x' in [0, height], y' in [-base, base] in the frame of home: home is the middle of the base (2 * base_m long) and looks into it."""
+    """x' in [0, height], y' in [-base, base] in the frame of home: home is the middle of the base (2 * base_m long) and looks into it.
+
+    `doubt_m` is how far the robot may by now be from where it believes to be in this frame; ways keep so much farther inside.
+    """
 
     base_m: float
     height_m: float
     home: Planar
+    doubt_m: float = 0.0
 
     def inward(self, x_m: float, y_m: float) -> tuple[float, float]:
         """(x', y') of a point."""
@@ -32,8 +36,16 @@ class Rectangle(NamedTuple):
         """True inside, and on the edge as well as a pose can tell."""
         return self.depth_m(x_m, y_m) >= -ON_THE_EDGE_M
 
+    def inside(self, x_m: float, y_m: float, depth_m: float) -> tuple[float, float]:
+        """The point nearest to a point that lies `depth_m` inside, or in the middle where the rectangle is narrower."""
+        x, y = self.inward(x_m, y_m)
+        deep_x, deep_y = min(depth_m, 0.5 * self.height_m), min(depth_m, self.base_m)
+        x, y = min(max(x, deep_x), self.height_m - deep_x), min(max(y, deep_y - self.base_m), self.base_m - deep_y)
+        c, s = math.cos(self.home[2]), math.sin(self.home[2])
+        return self.home[0] + c * x - s * y, self.home[1] + s * x + c * y
+
     def seen_from(self, frame: Planar) -> Rectangle:
         """The same rectangle in another frame; `frame` is the pose of that frame's origin in this one."""
         dx, dy = self.home[0] - frame[0], self.home[1] - frame[1]
         c, s = math.cos(frame[2]), math.sin(frame[2])
-        return Rectangle(self.base_m, self.height_m, (c * dx + s * dy, c * dy - s * dx, self.home[2] - frame[2]))
+        return self._replace(home=(c * dx + s * dy, c * dy - s * dx, self.home[2] - frame[2]))

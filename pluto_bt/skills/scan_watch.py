@@ -48,6 +48,8 @@ class ScanWatch:
             self._fault = ALL_WELL
         elif self._fault == ALL_WELL:
             self._fault = _bad("scans come too seldom")
+        elif self._fault.code is LinkStatus.LASER_FATAL:
+            self._fault = _bad("scans come again; two in time are asked for")
         return True
 
     def verdict(self, now_s: float) -> Verdict:
@@ -76,9 +78,14 @@ class ScanWatch:
 
     def _is_frozen(self, which: int, ranges: Array, part: slice, laser: Planar) -> bool:
         now, before, at = ranges[part], None if self._last is None else self._last.ranges_m[part], self._anchors[which]
-        if before is None or at is None or len(now) != len(before) or not np.array_equal(now, before):
+        if before is None or at is None or not are_same(now, before):
             self._anchors[which] = laser
             return False
         if np.count_nonzero(now < self._max_range_m) < RETURNS:
             return False
         return math.hypot(laser[0] - at[0], laser[1] - at[1]) > MOVED_M or abs(math.remainder(laser[2] - at[2], math.tau)) > MOVED_RAD
+
+
+def are_same(a: Array, b: Array) -> bool:
+    """Whether two runs of beams are equal, number by number. The first one nearly always tells."""
+    return len(a) == len(b) and (not len(a) or bool(a[0] == b[0])) and np.array_equal(a, b)

@@ -1,6 +1,6 @@
 """The hot loops of `SeenSpace`. A space is four arrays over square cells, in the frame of dead reckoning:
 
-`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (n, n): the same by the sonar alone.
+`seen` (n, n): when the cell was last seen or heard to be free, s; `heard` (2, n, n): the same by the sonar alone, and well inside a cone.
 `stamps` (2, n, n): when something was last seen to stand in it, and `spots` (2, n, n, 2): where, x m, y m; for two heights: LEVEL, the plane of
 the laser, and LOW, what only the sonar hears or a scan that looks down sees. NEVER = never.
 """
@@ -9,9 +9,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array
 
+Counts = NDArray[np.intp]
 CELL_M = 0.05
 LEVEL, LOW = 0, 1
 X, Y = range(2)
@@ -21,6 +25,9 @@ CONE_SLACK_M = 0.12  # the same for an echo
 FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
 TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
+SUDDEN_M = 1.0  # who is heard so near where nothing was known may be on his way
+CAME, SUDDEN = 1, 2
+ANYHOW, INSIDE = 0, 1  # layers of `heard`
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
 
@@ -88,32 +95,54 @@ def put(
 
 
 @kernel
+def place_cones(axes: Array, leaves_m: Array, heard_m: Array, rounds: int, x_m: float, y_m: float, theta_rad: float, cones: Array) -> None:
+    """The cones of a round as `hear_cones` takes them, for the robot at (x, y, theta).
+
+    Args:
+        axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
+        heard_m: (ROUNDS, k) the last rounds, the newest one last, 0 = deaf. rounds: how many there have been; with fewer nothing clears.
+    """
+    c, s, newest = math.cos(theta_rad), math.sin(theta_rad), heard_m.shape[0] - 1
+    for k in range(axes.shape[0]):
+        cones[k, 0], cones[k, 1] = x_m + c * axes[k, 0] - s * axes[k, 1], y_m + s * axes[k, 0] + c * axes[k, 1]
+        cones[k, 2], cones[k, 3], cones[k, 5] = axes[k, 2] + theta_rad, max(heard_m[newest, k], leaves_m[k]), leaves_m[k]
+        cones[k, 4] = heard_m[newest, k] if rounds > newest else 0.0
+        for r in range(newest):
+            cones[k, 4] = min(cones[k, 4], heard_m[r, k])
+
+
+@kernel
 def hear_cones(
     seen: Array, heard: Array, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, half_cone_rad: float,
-    stamp_s: float, most_m: float, fleeting_s: float,
-) -> None:  # fmt: skip
+    stamp_s: float, most_m: float, fleeting_s: float, news: Counts,
+) -> int:  # fmt: skip
     """Take a round of the sonar ring.
 
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
+        news: (k,) is filled: CAME, an echo's whole arc was heard free a moment ago, so what is there now walks; SUDDEN, it is near and new.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
     where it was free a moment ago came by itself and may go by itself: it counts as so much older, `fleeting_s`, from the start.
+    Returns: how many cones are marked.
     """
-    opening = math.tan(half_cone_rad)
+    opening, touching = math.tan(half_cone_rad), 0
     for clears in (1, 0):
         for k in range(cones.shape[0]):
             x_m, y_m, clear_m, echo_m = cones[k, 0], cones[k, 1], cones[k, 4] - CONE_SLACK_M, cones[k, 3]
-            if clears == 0 and (echo_m >= most_m or is_explained(stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
+            if clears == 0 and (echo_m >= most_m or is_explained(LEVEL, stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)):
                 continue
             if clears == 0 and echo_m <= cones[k, 5]:
-                cones[k, 3] = TOUCHING_M
+                cones[k, 3], touching = TOUCHING_M, touching + 1
                 continue
+            if clears == 0 and echo_m < SUDDEN_M and not is_explained(LOW, stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad):
+                news[k] = SUDDEN
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
             row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
+            on_arc, was_free = 0, 0
             for row in range(row_0, row_1):
                 for column in range(column_0, column_1):
                     dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
@@ -122,38 +151,46 @@ def hear_cones(
                         continue
                     if clears == 1:
                         if away_m < clear_m:
-                            clear_cell(seen, heard, stamps, row, column, stamp_s)
+                            clear_cell(seen, stamps, row, column, stamp_s)
+                            heard[ANYHOW, row, column] = stamp_s
+                            if aside_m < ahead_m * opening - CELL_M:  # what stands on the edge is heard now and then
+                                heard[INSIDE, row, column] = stamp_s
                     elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
-                        put_s = stamp_s - fleeting_s if heard[row, column] > stamp_s - LATELY_S else stamp_s
+                        on_arc, was_free = on_arc + 1, was_free + (heard[INSIDE, row, column] > stamp_s - LATELY_S)
+                        put_s = stamp_s - fleeting_s if heard[ANYHOW, row, column] > stamp_s - LATELY_S else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
+            if on_arc > 0 and was_free == on_arc:
+                news[k] = CAME
+    return touching
 
 
 @inline_kernel
-def clear_cell(seen: Array, heard: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
+def clear_cell(seen: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
     """The sonar hears through a cell: what was heard there is gone, and so is what the laser saw there long ago."""
-    seen[row, column] = heard[row, column] = stamp_s
+    seen[row, column] = stamp_s
     stamps[LOW, row, column] = NEVER
     if stamps[LEVEL, row, column] < stamp_s - FRESH_S:
         stamps[LEVEL, row, column] = NEVER
 
 
 @inline_kernel
-def is_explained(stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, k: int, half_cone_rad: float) -> bool:
-    """Whether the laser knows of something in the cone about as near as the echo."""
+def is_explained(
+    layer: int, stamps: Array, spots: Array, corner_x_m: float, corner_y_m: float, cones: Array, k: int, half_cone_rad: float
+) -> bool:
+    """Whether something is known in the cone about as near as the echo, by the laser or from echoes before."""
     x_m, y_m, reach_m, opening = cones[k, 0], cones[k, 1], cones[k, 3] + 2.0 * CONE_SLACK_M, math.tan(half_cone_rad)
     c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
-    found = False
     column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, stamps.shape[2])
     row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, stamps.shape[1])
     for row in range(row_0, row_1):
         for column in range(column_0, column_1):
-            if stamps[LEVEL, row, column] > NEVER:
-                dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
+            if stamps[layer, row, column] > NEVER:
+                dx, dy = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
                 ahead_m, aside_m = c * dx + s * dy, abs(c * dy - s * dx)
                 if dx * dx + dy * dy < reach_m * reach_m and aside_m < ahead_m * opening + CELL_M:
-                    found = True
-    return found
+                    return True
+    return False
 
 
 @kernel

@@ -11,16 +11,17 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Sonar
+from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.lone_beams import believed_ends
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, hear_cones, put, see_beams, stand
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, Counts, hear_cones, place_cones, put, see_beams, stand
 
 ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
 MOST_POINTS = 4000
-LONE_STEP_M = 0.3  # one beam so much shorter than both neighbours needs the scan before to be believed
 LEVEL_RAD = math.radians(1.5)  # a scan tilted by less counts as level
 GROUND_M = 0.05  # what a tilted beam meets lower than this is the ground
 BEHIND_M = 0.5  # echoes are used so much less far than beams, so that the laser has seen what they come from
-APEX_X, APEX_Y, AXIS, ECHO, CLEAR_TO, LEAVES = range(6)  # columns of the cones
+ECHO = 3  # column of the cones
 DEAF_M = 0.02
 ROUNDS = 3  # so many rounds of the sonar must agree that a cone is free: echoes get lost
 
@@ -34,18 +35,22 @@ class SeenSpace:
         n = 2 * (math.ceil(reach_m / CELL_M) + ROLL_CELLS) + 1
         self._outline, self._hear_m, self._reach_m, self._fleeting_s = outline, hear_m, reach_m, fleeting_s
         self.seen: Array = np.full((n, n), NEVER)
-        self._heard: Array = np.full((n, n), NEVER)
+        self._heard: Array = np.full((2, n, n), NEVER)
         self.stamps: Array = np.full((2, n, n), NEVER)
         self.spots: Array = np.full((2, n, n, 2), NEVER)
         self.points: Array = np.zeros((MOST_POINTS, 4))
         self.count = 0
         self.believed: Array = np.zeros(0)
+        self._fan = Fan()
         self._corner = (0, 0)  # of the lower left cell, in cells
         self._middle: tuple[int, int] | None = None
         self._last_ranges_m: Array | None = None
-        self._rounds: list[Array] = []
+        self._rounds = 0  # of the sonar since it was away; the last of them:
+        self._rounds_m: Array = np.zeros((ROUNDS, 0))
+        self._cones: Array = np.zeros((0, 6))
         self._touching: Array = NOWHERE  # robot frame
-        self._see, self._hear, self._stand = see_beams.compiled(), hear_cones.compiled(), stand.compiled()
+        self._see, self._stand = see_beams.compiled(), stand.compiled()
+        self._place, self._hear = place_cones.compiled(), hear_cones.compiled()
 
     @property
     def corner_m(self) -> tuple[float, float]:
@@ -71,7 +76,7 @@ class SeenSpace:
             self._last_ranges_m = None
             self._add_tilted(scan, laser, z_m, tilt_rad, people)
             return False
-        self.believed = believed = self._believed(ranges)
+        self.believed = believed = believed_ends(ranges, self._last_ranges_m, False)
         self._last_ranges_m = ranges
         self._see(
             self.seen, self.stamps, self.spots, *self.corner_m, laser[0], laser[1], laser[2] + first, step, ranges, believed,
@@ -80,58 +85,46 @@ class SeenSpace:
         return True
 
     def _add_tilted(self, scan: LaserScan, laser: Planar, z_m: float, tilt_rad: float, people: Array) -> None:
-        angles = scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
-        ahead = scan.ranges_m * np.cos(angles)
+        _, cos, sin = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
+        ahead = scan.ranges_m * cos
         usable = (scan.ranges_m > 0.0) & (scan.ranges_m < self._reach_m) & (z_m - ahead * math.sin(tilt_rad) > GROUND_M)
-        usable &= self._believed(scan.ranges_m) > 0.0  # no level scan could take a dazzled beam back
+        usable &= believed_ends(scan.ranges_m, None, False) > 0.0  # no level scan could take a dazzled beam back
         c, s = math.cos(laser[2]), math.sin(laser[2])
-        x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * np.sin(angles))[usable]
+        x, y = ahead[usable] * math.cos(tilt_rad), (scan.ranges_m * sin)[usable]
         points = np.column_stack((laser[0] + c * x - s * y, laser[1] + s * x + c * y))
         is_body = (np.hypot(points[:, None, 0] - people[:, 0], points[:, None, 1] - people[:, 1]) < people[:, 2]).any(axis=1)
         stamps_s = scan.stamp_s - np.where(is_body, self._fleeting_s, 0.0)
         for (px, py), stamp_s in zip(points.tolist(), stamps_s.tolist(), strict=True):
             put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], stamp_s)
 
-    def _believed(self, ranges: Array) -> Array:
-        """(n,) 1 where the end of a beam is believed; 0 for a lone short one (dazzle, a leaf) that the scan before does not confirm."""
-        believed = np.ones(len(ranges))
-        lone = np.flatnonzero(np.minimum(ranges[:-2], ranges[2:]) - ranges[1:-1] > LONE_STEP_M) + 1
-        before = self._last_ranges_m
-        for i in lone.tolist():
-            is_known = before is not None and len(before) == len(ranges) and np.any(np.abs(before[max(0, i - 4) : i + 5] - ranges[i]) < LONE_STEP_M)
-            believed[i] = float(is_known)
-        return believed
-
-    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> None:
+    def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> Counts:
         """Take a round of the ring.
 
         Args:
             axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
+        Returns: (k,) CAME, SUDDEN or 0: what is new about each echo.
         """
-        heard_m = ranges_m * (ranges_m > sonar.min_range_m + DEAF_M)  # nearer it is deaf: it may be anywhere, and nothing is proved
-        self._rounds = [*self._rounds[1 - ROUNDS :], heard_m]
-        c, s = math.cos(robot[2]), math.sin(robot[2])
-        cones = np.zeros((len(ranges_m), 6))
-        cones[:, APEX_X] = robot[0] + c * axes[:, 0] - s * axes[:, 1]
-        cones[:, APEX_Y] = robot[1] + s * axes[:, 0] + c * axes[:, 1]
-        cones[:, AXIS] = axes[:, 2] + robot[2]
-        cones[:, ECHO] = np.maximum(heard_m, leaves_m)
-        cones[:, LEAVES] = leaves_m
-        if len(self._rounds) == ROUNDS:
-            cones[:, CLEAR_TO] = np.minimum(np.minimum(*self._rounds[:2]), heard_m)
+        if len(ranges_m) != self._rounds_m.shape[1]:
+            self._rounds_m, self._cones = np.zeros((ROUNDS, len(ranges_m))), np.zeros((len(ranges_m), 6))
+        self._rounds_m[:-1] = self._rounds_m[1:]
+        self._rounds_m[-1] = ranges_m * (ranges_m > sonar.min_range_m + DEAF_M)  # nearer it is deaf: it may be anywhere, and nothing is proved
+        self._rounds += 1
+        cones = self._cones
+        self._place(axes, leaves_m, self._rounds_m, self._rounds, *robot, cones)
         most_m = min(self._hear_m, self._reach_m - BEHIND_M, sonar.max_range_m - 0.01)
         half_cone_rad = math.radians(sonar.cone_deg) / 2.0
-        self._hear(self.seen, self._heard, self.stamps, self.spots, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s)
-        touching = cones[:, ECHO] == TOUCHING_M
-        if touching.any():
+        news = np.zeros(len(cones), dtype=np.intp)
+        self._touching = NOWHERE
+        space = (self.seen, self._heard, self.stamps, self.spots)
+        if self._hear(*space, *self.corner_m, cones, half_cone_rad, stamp_s, most_m, self._fleeting_s, news):
+            touching = cones[:, ECHO] == TOUCHING_M
             x, y, theta = axes[touching].T
             self._touching = np.column_stack((x + leaves_m[touching] * np.cos(theta), y + leaves_m[touching] * np.sin(theta)))
-        else:
-            self._touching = NOWHERE
+        return news
 
     def drop_echoes(self) -> None:
         """The sonar was away: what it said before does not confirm what it says next."""
-        self._rounds, self._touching = [], NOWHERE
+        self._rounds, self._touching = 0, NOWHERE
 
     def stand(self, robot: Planar, grown_m: float, now_s: float, obstacles_since_s: float, window_m: float) -> None:
         """The robot stands here: its place is free. Gather the points within `window_m` into `points`."""
@@ -153,7 +146,8 @@ class SeenSpace:
         corner = (at[0] - half, at[1] - half)
         moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
         self._corner, self._middle = corner, at
-        self.seen, self._heard = _shifted(self.seen, *moved), _shifted(self._heard, *moved)
+        self.seen = _shifted(self.seen, *moved)
+        self._heard = np.stack([_shifted(layer, *moved) for layer in self._heard])
         self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
         self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
 

@@ -14,6 +14,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.obstacles import Obstacles
 from pluto_bt.skills.outline import Array, Outline, Planar
+from pluto_bt.skills.scan_watch import are_same
 from pluto_bt.skills.sonar import SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -99,6 +100,10 @@ class Sight:
         """(n, 5) x, y, margin, velocity x, y in the robot frame of what is known around the robot."""
         return self._obstacles.around(robot, with_laser and self.laser is not None, with_sonar and self.ring is not None, now_s)
 
+    def is_echo(self, which: int) -> bool:
+        """True if that one of the `points` given last was heard and not seen."""
+        return which >= self._obstacles.first_echo
+
     def sees_behind(self, with_sonar: bool) -> bool:
         """True if something watches while the robot backs."""
         return with_sonar and self.ring is not None and self.ring.hears_behind
@@ -121,7 +126,7 @@ class Sight:
 
     def _is_frozen(self, ranges: Array, robot: Planar) -> bool:
         at = self._changed_at
-        if at is None or self._scan is None or not np.array_equal(ranges, self._scan.ranges_m):
+        if at is None or self._scan is None or not are_same(ranges, self._scan.ranges_m):
             self._changed_at = robot
             return False
         is_open = self.laser is not None and float(np.nanmin(ranges)) >= self.laser.max_range_m  # an empty field always looks the same

@@ -103,12 +103,13 @@ def unexplained(axes: Array, ranges_m: Array, half_cone_rad: float, points: Arra
         slack_m: how much farther than the echo a point may be and still explain it.
     """
     open_echo = np.ones(axes.shape[0], dtype=np.bool_)
+    opening = np.tan(half_cone_rad)
     for k in range(axes.shape[0]):
         c, s = np.cos(axes[k, 2]), np.sin(axes[k, 2])
         for i in range(points.shape[0]):
             dx, dy = points[i, 0] - axes[k, 0], points[i, 1] - axes[k, 1]
             ahead, aside = c * dx + s * dy, c * dy - s * dx
-            if dx * dx + dy * dy < (ranges_m[k] + slack_m) ** 2 and abs(aside) <= ahead * np.tan(half_cone_rad) + slack_m:
+            if dx * dx + dy * dy < (ranges_m[k] + slack_m) ** 2 and abs(aside) <= ahead * opening + slack_m:
                 open_echo[k] = False
                 break
     return open_echo

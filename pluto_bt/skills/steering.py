@@ -47,6 +47,7 @@ class Steer:
 
     def __init__(self, outline: Outline) -> None:
         self._outline = outline
+        self._headings: Array = np.append(_HEADINGS, 0.0)  # the last one is the goal's
         self.forget()
 
     def forget(self) -> None:
@@ -66,7 +67,8 @@ class Steer:
         """
         o = self._outline
         points = met(points, MEETING_MPS, MEETING_S)
-        headings = np.append(_HEADINGS, goal_rad)
+        headings = self._headings
+        headings[-1] = goal_rad
         ways = corridors(points, headings, o.front_m, o.back_m, o.side_m, LOOK_M, ENOUGH_M + 1.0)
         enough_m = min(ENOUGH_M, max(goal_m, 0.1))
         sum_rad = goal_rad + bend(points, goal_rad, o.side_m, force)

@@ -51,6 +51,11 @@ class StopFilter:
         self.eyes = FilterEyes(platform, p, self._outline, self._window_m(self.limits.speed_mps)) if has_eyes else None
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self._first_trouble = first_trouble.compiled()
+        limits = self.limits
+        self._robot: Array = np.array([
+            0.0, 0.0, limits.acceleration_mps2, BRAKING_SHARE * limits.deceleration_mps2, BRAKING_SHARE * limits.turn_acceleration_radps2,
+            self._hold_s, self._outline.reach_m, self._least_m, self._least_m + p.margin_m, p.margin_s, p.creep_mps,
+        ])  # fmt: skip
         self.verdict = Verdict()
         self.out: Twist = STILL
 
@@ -151,7 +156,7 @@ class StopFilter:
         self, eyes: FilterEyes, twist: Twist, raw: ActuatorState, robot: Planar, now_s: float, verdict: Verdict
     ) -> tuple[Twist, Verdict]:
         """The largest share of a twist whose stopping path is free."""
-        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.walkers.rows(now_s), self.parameters
+        space, figures, walkers, p = eyes.space, self._figures(raw), eyes.people(now_s), self.parameters
 
         def trouble_at(share: float) -> tuple[int, int, float]:
             return self._first_trouble(
@@ -177,12 +182,8 @@ class StopFilter:
 
     def _figures(self, raw: ActuatorState) -> Array:
         """The robot as `first_trouble` reckons with it: it is already on its way to what it was told last."""
-        limits, p = self.limits, self.parameters
-        now = ramp((raw.velocity[0], raw.velocity[1]), self.out, limits, self._lag_s)
-        return np.array([
-            now[0], now[1], limits.acceleration_mps2, BRAKING_SHARE * limits.deceleration_mps2, BRAKING_SHARE * limits.turn_acceleration_radps2,
-            self._hold_s, self._outline.reach_m, self._least_m, self._least_m + p.margin_m, p.margin_s, p.creep_mps,
-        ])  # fmt: skip
+        self._robot[stop_path.SPEED], self._robot[stop_path.TURN_RATE] = ramp(raw.velocity, self.out, self.limits, self._lag_s)
+        return self._robot
 
     def _why(self, eyes: FilterEyes, trouble: tuple[int, int, float], wanted: Twist, out: Twist) -> Verdict:
         """A sentence with figures."""

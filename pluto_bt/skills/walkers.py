@@ -37,6 +37,7 @@ class WalkerWatch:
         self._movers = Movers()
         self._scans: list[tuple[LaserScan, Planar]] = []
         self._walkers: list[Walker] = []
+        self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
         """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
@@ -46,10 +47,12 @@ class WalkerWatch:
             return
         ranges = scan.ranges_m
         near: Mask = (ranges > 0.0) & (ranges < REACH_M) & (believed != 0.0)
-        bearing = laser[2] + scan.angle_min_rad + scan.angle_step_rad * np.flatnonzero(near)
-        points = np.column_stack((laser[0] + ranges[near] * np.cos(bearing), laser[1] + ranges[near] * np.sin(bearing)))
+        beams = near.nonzero()[0]
+        range_m, bearing_rad = ranges[beams], laser[2] + scan.angle_min_rad + scan.angle_step_rad * beams
+        points = np.zeros((len(beams), 2))
+        points[:, 0], points[:, 1] = laser[0] + range_m * np.cos(bearing_rad), laser[1] + range_m * np.sin(bearing_rad)
         moved = came_closer(ranges, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
-        self._movers.velocities(points, np.flatnonzero(near), moved, scan.stamp_s)
+        self._movers.velocities(points, beams, moved, scan.stamp_s)
         self._meet(_apart([Walker(x, y, vx, vy, 0.0, scan.stamp_s, walked_s) for x, y, vx, vy, walked_s in self._movers.walkers.tolist()]))
         self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
 
@@ -59,15 +62,25 @@ class WalkerWatch:
         seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
+    def doubt(self, stamp_s: float) -> None:
+        """Something was heard that may be somebody, until it proves to stand."""
+        self._doubted_s = stamp_s
+
     def rows(self, now_s: float) -> Array:
         """(n, COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
         return np.array(sure) if sure else NOBODY
 
+    def is_anybody_about(self, now_s: float) -> bool:
+        """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
+        return now_s - self._doubted_s < IN_VIEW_S or len(self.rows(now_s)) > 0
+
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
         rows = self.rows(now_s)
+        if not len(rows):
+            return NO_BODY
         seen = rows[rows[:, IN_VIEW] == 1.0]
         return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
 
@@ -112,3 +125,5 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, COLUMNS))
+ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, 0.0]])  # somebody out of view, nobody knows where
+NO_BODY: Array = np.zeros((0, 3))

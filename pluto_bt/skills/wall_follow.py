@@ -25,10 +25,11 @@ from pluto_bt.skills.wall_path import Ball, WallPath, Wish, find_wall, foot_of, 
 
 DISTANCE, SIDE = 1, 2  # our own in `force` of T = 3, where it has so many numbers: metres (0 = the parameter), and below 0 = wall on the right
 NEAR_M = 0.5  # so near to its path the robot is at the wall
-PURSUIT_S, SHORTEST_M, LONGEST_M = 1.0, 0.4, 0.9  # how far ahead on the path it steers to
+PURSUIT_S, SHORTEST_M, LONGEST_M = 1.0, 0.3, 0.9  # how far ahead on the path it steers to
 TURN_SHARE = 0.7  # of the turn rate is planned with; the rest is for what goes wrong
 COMFORT_SHARE = 0.4  # of the deceleration, before bends
 CREEP_MPS = 0.08
+BEND_M = 0.24  # a bend is measured over so much of the path
 PROGRESS_M = 0.5
 ALONE_M, ALONE_WITHIN_M = 0.08, 2.5  # a point without another in the squares around it; farther away beams lie wide apart
 LOST_S = 3.0  # a wall that is not seen for so long is lost
@@ -76,7 +77,8 @@ class WallFollow:
         self._side = -1.0 if given[SIDE] < 0.0 else 1.0
         self.distance_m = given[DISTANCE] if given[DISTANCE] > 0.0 else p.distance_m
         middle_m = max(self.distance_m + p.camera_side_m, self._least_m)
-        self.wish = Wish(middle_m, p.fillet_m, max(p.opening_m, middle_m + self._least_m), self._least_m)
+        camera_m = (-p.camera_back_m, middle_m - self.distance_m, self.distance_m)
+        self.wish = Wish(middle_m, camera_m, p.fillet_m, max(p.opening_m, middle_m + self._least_m), self._least_m)
         self.reach_m = max(p.look_m, middle_m + self.wish.fillet_m + p.lost_m)
         self._at: Planar = (0.0, 0.0, 0.0)
         self._path: WallPath | None = None
@@ -127,7 +129,7 @@ class WallFollow:
         """Work out the path anew, from where the ball was last or else from the nearest wall. Where neither leads along the wall that is
         followed, the last path holds: a thin wall is hard to see edge-on."""
         path = None if self._path is None else plan(stands, _ball_from(self._path.ball, self._at, robot), self.wish)
-        if path is None or path.off_m > NEAR_M:
+        if path is None or (self._is_there and path.off_m > NEAR_M):
             ball = find_wall(stands, self.wish)
             other = None if ball is None else plan(stands, ball, self.wish)
             path = path if other is None or (path is not None and path.off_m < other.off_m) else other
@@ -144,7 +146,7 @@ class WallFollow:
         self._is_there = self._is_there or off_m < NEAR_M
         way_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path[foot:, :2], axis=0).T))))
         speed_mps = self._speed_mps(path[foot:, 2], way_m)
-        ahead_m = max(SHORTEST_M, min(LONGEST_M, PURSUIT_S * speed_mps)) + 0.7 * off_m
+        ahead_m = max(SHORTEST_M, min(LONGEST_M, PURSUIT_S * speed_mps)) + 0.5 * off_m
         aim = foot + int(np.searchsorted(way_m, ahead_m))
         x, y = path[min(aim, len(path) - 1), :2].tolist()
         bearing_rad, away_m = math.atan2(y, x), math.hypot(x, y)
@@ -159,11 +161,12 @@ class WallFollow:
         """As fast as the bends ahead allow, with time to brake before them."""
         if len(way_m) < 3:
             return CREEP_MPS
-        bends = np.abs(np.remainder(headings_rad[4:] - headings_rad[:-4] + math.pi, math.tau) - math.pi)
-        per_m = bends / np.maximum(way_m[4:] - way_m[:-4], 0.1)
+        later = np.minimum(np.searchsorted(way_m, way_m + BEND_M), len(way_m) - 1)
+        bends = np.abs(np.remainder(headings_rad[later] - headings_rad + math.pi, math.tau) - math.pi)
+        per_m = bends / BEND_M
         most_mps = TURN_SHARE * self.limits.turn_rate_radps / np.maximum(per_m, 1e-3)
         brake_mps2 = COMFORT_SHARE * self.limits.deceleration_mps2
-        allowed = np.sqrt(most_mps**2 + 2.0 * brake_mps2 * way_m[: len(most_mps)])
+        allowed = np.sqrt(most_mps**2 + 2.0 * brake_mps2 * way_m)
         to_end_mps = math.sqrt(2.0 * brake_mps2 * float(way_m[-1]))
         return float(max(CREEP_MPS, min(self.limits.speed_mps, allowed.min(initial=math.inf), to_end_mps)))
 

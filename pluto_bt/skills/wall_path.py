@@ -4,6 +4,7 @@ Two balls roll along the wall. The first, as wide as the narrowest opening that 
 not fit into are passed by, posts that stand near belong to the wall. The second rolls along what the first has touched. It is larger than the
 distance to keep, so that it rounds off inner corners, and the path runs inside it at that distance from where it touches: arcs of the
 distance around outer corners, arcs of the fillet in inner ones. Where there is no room for that it shrinks, down to the first ball.
+In pockets, where the camera would be left too far from everything, the path leans in.
 
 All is in the robot frame, metres and radians; for a wall on the right the caller mirrors points and path.
 """
@@ -28,6 +29,9 @@ GROWTH = 1.15  # of a ball that has found more room, from step to step
 LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
 HALVINGS = 5
+LEAN_M, SPARE_M = 0.35, 0.2  # so far at most the path leans into a pocket, and from so much on that the camera is too far away
+LEANING_M = 0.6  # so far before and after …
+TOO_NEAR_M = 0.1  # … but not so far that the camera would be nearer than by this
 LEFT_RAD = (math.radians(-10.0), math.pi)  # where a wall on the left is looked for first
 
 
@@ -46,12 +50,14 @@ class Wish(NamedTuple):
 
     Attributes:
         distance_m: of the robot's middle from the wall.
+        camera_m: x, y where the camera is held in the robot frame, and its distance from the wall.
         fillet_m: radius of the path in inner corners.
         opening_m: narrower openings are passed by.
         least_m: nearer than this the robot's middle may come to nothing.
     """
 
     distance_m: float
+    camera_m: tuple[float, float, float]
     fillet_m: float
     opening_m: float
     least_m: float
@@ -105,6 +111,7 @@ def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
     for halving in range(HALVINGS + 1):
         share = 1.0 if halving == 0 else 0.5 * (low + high)
         path = _inside(chain, rows[0], end, ball.radius_m, share, wish)
+        path = None if path is None else _leaning(path, points, wish)
         if path is not None and len(path) - foot_of(path) > ENOUGH_M / STEP_M and _is_clear(path, points, wish.least_m):
             low, best = share, path
             if halving == 0:
@@ -170,7 +177,7 @@ def _inside(chain: Array, first: Array, end: Array, radius_m: float, share: floa
 
 def _offset(rows: Array, normals_rad: Array, inner_m: float) -> Array:
     """The path `inner_m` from the ball's middle towards where it touches; where it stops and touches anew, an arc around its middle."""
-    steps = np.maximum(1, np.ceil(np.abs(np.diff(normals_rad)) * inner_m / STEP_M)).astype(np.intp)
+    steps = np.maximum(1, np.ceil(np.abs(np.diff(normals_rad)) * (inner_m + LEAN_M) / STEP_M)).astype(np.intp)
     which = np.repeat(np.arange(len(steps)), steps)
     share = (np.arange(len(which)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[which]
     normal = normals_rad[which] + share * np.diff(normals_rad)[which]
@@ -179,6 +186,26 @@ def _offset(rows: Array, normals_rad: Array, inner_m: float) -> Array:
     path[:, 0], path[:, 1] = middle[:, 0] - inner_m * np.cos(normal), middle[:, 1] - inner_m * np.sin(normal)
     path[:, 2] = normal + 0.5 * math.pi
     path[:, 3:] = rows[which, 2:]
+    return path
+
+
+def _leaning(path: Array, points: Array, wish: Wish) -> Array:
+    """The path, nearer to the wall on the next metres where the camera would else be farther from everything than `SPARE_M` too much."""
+    x_m, y_m, away_m = wish.camera_m
+    ahead = path[: foot_of(path) + int((AHEAD_M + LEANING_M) / STEP_M)]
+    way_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(ahead[:, :2], axis=0).T))))
+    some = ahead[::3]
+    c, s = np.cos(some[:, 2:3]), np.sin(some[:, 2:3])
+    camera_x, camera_y = some[:, :1] + c * x_m - s * y_m, some[:, 1:2] + s * x_m + c * y_m
+    squares = (camera_x - points[:, 0]) ** 2 + (camera_y - points[:, 1]) ** 2
+    off_m = np.sqrt(squares.min(axis=1)) - away_m
+    most_m = max(0.0, min(LEAN_M, wish.distance_m - wish.least_m))
+    over_m = np.clip(off_m - SPARE_M, 0.0, most_m)
+    near = np.maximum(1.0 - np.abs(way_m[::3, None] - way_m[::3]) / LEANING_M, 0.0)
+    leans_m = np.minimum((over_m * near).max(axis=1), np.maximum(off_m + TOO_NEAR_M, 0.0))
+    lean_m = np.interp(way_m, way_m[::3], leans_m)
+    ahead[:, 0] -= lean_m * np.sin(ahead[:, 2])
+    ahead[:, 1] += lean_m * np.cos(ahead[:, 2])
     return path
 
 

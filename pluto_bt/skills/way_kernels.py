@@ -92,7 +92,8 @@ def search(
         least: clearance without which nothing passes, except within `relaxed` of start and goal.
         room: clearance that a place worth covering must have, so that the robot can turn there.
         half: clearance of an open path; narrower costs more. wide: clearance from which on more is not better.
-        greed: so many times the rest of the way counts; above 1 far fewer cells are looked at, and the way is hardly longer.
+        greed: so many times the rest of the way counts; above 1 far fewer cells are looked at, and the way is hardly longer: at most
+            so many times as dear, although no place is looked at twice.
         cost, came, keys, places: working memory; `came` holds the way back, place by place.
     Returns: the place where the way ends, or -1.
     """
@@ -102,14 +103,15 @@ def search(
             cost[i * columns + j] = np.inf
     begin = start[0] * columns + start[1]
     cost[begin], came[begin] = 0.0, begin
+    settled = np.zeros(rows * columns, dtype=np.uint8)  # else a greedy search goes over the same ground again and again where no way leads on
     count = push(keys, places, 0, 0.0, begin)
     while count > 0:
         count = pop(keys, places, count)
         at = int(places[count])
+        if settled[at] != 0:
+            continue
+        settled[at] = 1
         i, j = at // columns, at % columns
-        rest = greed * max(0.0, math.hypot(goal[0] - i, goal[1] - j) - goal_reach) if goal_reach >= 0.0 else 0.0
-        if keys[count] > cost[at] + rest + 0.01:
-            continue  # a cheaper way here was found later
         if goal_reach >= 0.0:
             if math.hypot(goal[0] - i, goal[1] - j) <= goal_reach:
                 return at
@@ -120,6 +122,10 @@ def search(
                 a, b = i + di, j + dj
                 if (di == 0 and dj == 0) or not (0 <= a < rows and 0 <= b < columns) or evidence[a, b] > 0:
                     continue
+                to = a * columns + b
+                step = 1.0 if di == 0 or dj == 0 else 1.41421356
+                if settled[to] != 0 or cost[to] <= cost[at] + step:
+                    continue  # known as near already as any step from here could bring it
                 free = clearance[a, b]
                 if free < least or rectangle[BASE] > 0.0:
                     from_end = min(math.hypot(a - start[0], b - start[1]), math.hypot(a - goal[0], b - goal[1]) if goal_reach >= 0.0 else 1e9)
@@ -130,8 +136,7 @@ def search(
                 factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
                 if free < half:
                     factor += NARROW * (half - max(free, least)) / (half - least) + (TIGHT if free < least else 0.0)
-                new = cost[at] + factor * (1.0 if di == 0 or dj == 0 else 1.41421356)
-                to = a * columns + b
+                new = cost[at] + factor * step
                 if new < cost[to] - 1e-4:
                     cost[to], came[to] = new, at
                     ahead = greed * max(0.0, math.hypot(goal[0] - a, goal[1] - b) - goal_reach) if goal_reach >= 0.0 else 0.0

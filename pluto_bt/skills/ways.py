@@ -84,7 +84,7 @@ class Ways:
             return np.zeros(7)
         x, y = self.map.place(rectangle.home[0], rectangle.home[1])
         theta = rectangle.home[2]
-        sizes = np.array([rectangle.base_m, rectangle.height_m, self.map.parameters.edge_m]) / self.map.cell_m
+        sizes = np.array([rectangle.base_m, rectangle.height_m, self.map.parameters.edge_m + rectangle.doubt_m]) / self.map.cell_m
         return np.array([x, y, math.cos(theta), math.sin(theta), *sizes])
 
     def _traced(self, end: int) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import deque
+
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills import reasons
@@ -11,6 +13,7 @@ from pluto_bt.skills.verdict import ALL_WELL, Verdict
 LEAST_M, LEAST_RAD = 0.012, 0.02  # less expected way or turn says nothing
 LONGEST_S = 0.12  # after a longer time without a look nothing is known of what the wheels did meanwhile
 LEAST_SHARE = 0.15  # of the expected way: less counts as standing still
+LAG_S = 0.05  # motors follow so late; else a turn that begins suddenly, after a long while of hardly any, looks like one that is not followed
 
 
 class Channel:
@@ -52,6 +55,7 @@ class WheelWatch:
     def __init__(self, limits: Limits, still_s: float, retry_s: float) -> None:
         self._limits, self._still_s, self._retry_s = limits, still_s, retry_s
         self._model: Twist = STILL
+        self._late: deque[tuple[float, Twist]] = deque([(0.0, STILL)])  # the model of the last moments: since when, and the twist
         self._last_s: float | None = None
         self._way, self._turn = Channel(LEAST_M), Channel(LEAST_RAD)
         self._held_until_s = -1.0
@@ -61,15 +65,17 @@ class WheelWatch:
         """`in_force`: the twist that the base was told last."""
         if self._last_s is None or now_s - self._last_s > LONGEST_S:
             self._model = raw.velocity
+            self._late = deque([(now_s, raw.velocity)])
             self._begin(raw, now_s)
             self._last_s = now_s
         dt_s, self._last_s = now_s - self._last_s, now_s
         self._model = ramp(self._model, in_force, self._limits, dt_s)
+        rate, turn_rate = self._lagging(now_s)
         if now_s < self._held_until_s:
             self._begin(raw, now_s)
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
-        way_s = self._way.stands_s(self._model[0], in_force[0], dt_s, raw.position[0], now_s)
-        turn_s = self._turn.stands_s(self._model[1], in_force[1], dt_s, raw.position[1], now_s)
+        way_s = self._way.stands_s(rate, in_force[0], dt_s, raw.position[0], now_s)
+        turn_s = self._turn.stands_s(turn_rate, in_force[1], dt_s, raw.position[1], now_s)
         if max(way_s, turn_s) < self._still_s:
             return ALL_WELL
         self._held_until_s = now_s + self._retry_s
@@ -78,6 +84,13 @@ class WheelWatch:
             f"the encoders say {self._way.changed:.2f} m and {self._turn.changed:.2f} rad"
         )
         return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
+
+    def _lagging(self, now_s: float) -> Twist:
+        """The model as it was `LAG_S` ago."""
+        self._late.append((now_s, self._model))
+        while len(self._late) > 1 and self._late[1][0] <= now_s - LAG_S:
+            self._late.popleft()
+        return self._late[0][1]
 
     def _begin(self, raw: ActuatorState, now_s: float) -> None:
         self._way.begin(raw.position[0], now_s)

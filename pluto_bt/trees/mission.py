@@ -137,8 +137,9 @@ class Mission:
         """The path of the deepest RUNNING node, the first one where several are; "" if none is."""
         best: Tracked | None = None
         for tracked in self._tracked:
-            is_open = any(child.status is RUNNING for child in tracked.node.children)
-            if tracked.node.status is RUNNING and not is_open and (best is None or tracked.plan.depth > best.plan.depth):
+            if tracked.node.status is not RUNNING or any(child.status is RUNNING for child in tracked.node.children):
+                continue
+            if best is None or tracked.plan.depth > best.plan.depth:
                 best = tracked
         return best.path if best is not None else ""
 

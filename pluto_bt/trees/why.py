@@ -18,16 +18,20 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.reasons import CHAIN_REASONS
 
 LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
+LOCALISATION: Final = "localisation"
 CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
+STUCK_S: Final = 25.0  # the same for who is stuck: goto tries for 20 s to come nearer, and is held back only now and then
 BASE_TOPICS: Final = ("ATRV2/Bumper", "ATRV2/Sonar", "ATRV2/Battery")
 ODOMETRY: Final = "ATRV2/Drive/Raw"
+WHEEL_SLIP: Final = "wheel-slip"
 OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
     reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
     reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
     reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
     reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
+    WHEEL_SLIP: ("wheels", ""),
     "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
 }  # fmt: skip
@@ -140,6 +144,8 @@ def _module(view: View) -> Cause | None:
 def _sensor(view: View) -> Cause | None:
     """What the lowest complaint of the chain speaks of; topics that are too old speak before all others."""
     complaints = list(_complaints(view))
+    if view.ended[1] == reasons.STUCK:  # waiting for somebody is not being stuck
+        complaints = [(name, trouble) for name, trouble in complaints if trouble.link.reason != reasons.WALKER]
     words = [trouble.link.reason or OF_CODE.get(_code(trouble.link), "") for _, trouble in complaints]
     if not words:
         return None
@@ -167,12 +173,14 @@ def _base(view: View) -> Cause:
 def _complaints(view: View) -> Iterator[tuple[str, Trouble]]:
     """What the links complain of, the lowest first: now, or lately where the mission has given up or waits for it; then the mission's own word."""
     now_ns, is_over = view.now_s * 1e9, bool(view.ended[0]) or bool(view.trail.situation.ended[0])
-    for name in reversed(LINKS):
+    recent_s = STUCK_S if view.ended[1] == reasons.STUCK else RECENT_S
+    may_be_past = is_over or not view.trail.situation.moves
+    for name in (*reversed(LINKS), LOCALISATION):
         trouble = view.trail.troubles.get(name)
-        if trouble is None:
+        if trouble is None or (name == LOCALISATION and not may_be_past):  # what is found out there is corrected; the robot drives on
             continue
         lately_ns = now_ns - (trouble.until_ns if trouble.until_ns is not None else now_ns)
-        if trouble.until_ns is None or (lately_ns <= RECENT_S * 1e9 and (is_over or not view.trail.situation.moves)):
+        if trouble.until_ns is None or (lately_ns <= recent_s * 1e9 and may_be_past):
             yield name, trouble
     word = view.ended[1] or view.trail.situation.ended[0]
     if word:
@@ -235,6 +243,7 @@ def _cause(layer: str, code: str, text: str, since_s: float, age_s: float = 0.0,
 _CURES: Final = {
     reasons.LASER: "clear the way, or wait until what stands there has gone",
     reasons.SONAR: "clear the way, or wait until what stands there has gone",
+    WHEEL_SLIP: "look at the ground under the wheels; push the robot, or drive it out by hand",
     "paused": "`pluto shell resume`",
     "operator": "`pluto shell resume`",
 }  # fmt: skip

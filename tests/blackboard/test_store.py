@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, TopicError
+from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample, TopicError
 from pluto_bt.blackboard.codes import Avoidance, CommandType, LinkStatus, code_name, split_flags, status_name
 from pluto_bt.blackboard.messages import ActuatorState, BatteryState, LaserScan, Pose, read_only
 from pluto_bt.blackboard.poses import pose_at
@@ -25,7 +25,7 @@ def test_a_topic_has_one_type_one_writer_and_counts_its_values() -> None:
     assert board.newest("ATRV2/Battery") is None
     for volts in (25.0, 24.0):
         battery.put(BatteryState(1.0, volts), 1.5)
-    assert board.newest("ATRV2/Battery") == (BatteryState(1.0, 24.0), 2, 1.5)
+    assert board.newest("ATRV2/Battery") == Sample(BatteryState(1.0, 24.0), 2, 1.5)
     with pytest.raises(TopicError, match="is written by base, not by sick"):
         board.publisher("ATRV2/Battery", "sick")
     with pytest.raises(TopicError, match="base has the right to write ATRV2/Battery already"):

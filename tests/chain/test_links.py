@@ -7,6 +7,7 @@ import math
 import pytest
 
 from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.skills.rectangle import Rectangle
 from tests.chain.rig import Disc, Rig
 from tests.chain.robots import ATRV2, PIONEER
 
@@ -304,7 +305,7 @@ def test_46_keeps_home_and_does_not_move_the_robot() -> None:
     r.order(46, (1.0, 2.0), (40.0, 60.0), force=0.5)
     r.run(1.0)
     rectangle = r.links["motion"]._skill.rectangle
-    assert rectangle == (40.0, 60.0, (1.0, 2.0, 0.5))
+    assert rectangle == Rectangle(40.0, 60.0, (1.0, 2.0, 0.5))
     assert r.twist == (0.0, 0.0)
     r.order(46, velocity=(0.0, 0.0))
     r.run(0.2)

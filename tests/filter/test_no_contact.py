@@ -71,7 +71,7 @@ def test_it_backs_at_a_creep_where_nothing_was_seen_and_faster_where_it_came_fro
 
 def test_a_post_behind_that_was_never_seen_is_not_hit_harder_than_at_a_creep() -> None:
     robot = WholeRobot(hall(Shape("post", "circle", np.array([[-1.2, 0.0]]), 0.02)), "jbot", (0.0, 0.0, 0.0), level="filter")
-    robot.drive(-0.9, 0.0, 25.0)
+    robot.drive(-0.9, 0.0, 40.0)
     assert robot.system.simulator.collisions == []
     assert robot.system.simulator.hit_by, "no sensor of this robot looks behind: it creeps till it touches"
 

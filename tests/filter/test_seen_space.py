@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.outline import outline_of
-from pluto_bt.skills.seen_kernels import CELL_M, LEVEL, LOW, NEVER
+from pluto_bt.skills.seen_kernels import CAME, CELL_M, LEVEL, LOW, NEVER, SUDDEN
 from pluto_bt.skills.seen_space import SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, WALKER, first_trouble, rim_of
@@ -99,12 +100,13 @@ def test_rolling_along_keeps_what_is_still_near(x: float, y: float) -> None:
         assert max(abs(x - 1.0), abs(y - 0.3)) > REACH_M
 
 
-def hear(one: SeenSpace, ranges: np.ndarray, rounds: int = 3) -> None:
+def hear(one: SeenSpace, ranges: np.ndarray, rounds: int = 3, since_s: float = 5.0, step_s: float = 1.0, theta_rad: float = 0.0) -> list[Any]:
+    """What is new about the echoes of each round."""
     sonar = PIONEER.devices.sonar
     assert sonar is not None
     ring = SonarRing(sonar, outline_of(PIONEER.body.outline_m))
-    for k in range(rounds):
-        one.add_echoes(ring.axes, np.zeros(ring.count), ranges, sonar, (0.0, 0.0, 0.0), 5.0 + k)
+    stamps_s = [since_s + k * step_s for k in range(rounds)]
+    return [one.add_echoes(ring.axes, np.zeros(ring.count), ranges, sonar, (0.0, 0.0, theta_rad), stamp_s).tolist() for stamp_s in stamps_s]
 
 
 def test_an_echo_that_the_laser_does_not_explain_is_an_obstacle_and_is_forgotten_when_the_cone_is_free() -> None:
@@ -117,6 +119,16 @@ def test_an_echo_that_the_laser_does_not_explain_is_an_obstacle_and_is_forgotten
     hear(one, np.full(16, 5.0))
     one.stand((0.0, 0.0, 0.0), 0.0, 9.0, 0.0, REACH_M)
     assert one.count == 0
+
+def test_an_echo_where_all_was_free_came_and_one_near_the_robot_is_sudden_till_it_is_known() -> None:
+    one, near, far = space(), np.full(16, 5.0), np.full(16, 5.0)
+    near[3] = near[4] = 0.6
+    far[10:13] = 1.2
+    assert hear(one, near)[0][3] == SUDDEN and hear(one, near, since_s=8.0)[2][3] == 0
+    for k, theta_rad in enumerate((-0.2, 0.2, 0.0)):
+        hear(one, np.full(16, 5.0), 3, 8.7 + 0.3 * k, 0.1, theta_rad)
+    assert CAME in hear(one, far, 1, 9.6, 0.1)[0][10:13]
+    assert CAME not in hear(one, far, 1, 20.0, 0.1)[0][10:13], "what was free long ago may have been filled by anything"
 
 
 def test_an_echo_of_what_the_laser_sees_adds_nothing() -> None:

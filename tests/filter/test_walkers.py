@@ -50,16 +50,23 @@ def test_a_walker_is_found_with_his_place_and_pace(velocity: tuple[float, float]
     assert len(rows) == 1
     assert rows[0, :2] == pytest.approx(walk[-1], abs=0.3)
     assert 2.0 * rows[0, 2:4] == pytest.approx(velocity, abs=0.4), "half his velocity: he may stop as well as go on"
-    assert rows[0, 6] == 1.0
 
 
-def test_who_left_the_view_may_be_anywhere_his_legs_can_take_him_and_is_forgotten_after_a_while() -> None:
+def test_where_one_left_the_view_somebody_may_be_anywhere_for_a_while() -> None:
     walk = [(1.2 - 0.2 * k, 1.5) for k in range(14)]
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 14)
     near, far = watch.rows(now_s), watch.rows(now_s + 5.0)
     assert near[0, 6] == far[0, 6] == 0.0
     assert 4.0 < far[0, 4] - near[0, 4] < 9.0, "five seconds at about a metre a second"
-    assert len(watch.rows(now_s + 31.0)) == 0
+    assert watch.is_anybody_about(now_s + 25.0)
+    assert not watch.is_anybody_about(now_s + 31.0)
+
+
+def test_where_nobody_walked_nobody_is_assumed() -> None:
+    watch, now_s = watched([(2.0, 1.0)] * 10, [(0.0, 0.0, 0.0)] * 10)
+    assert not watch.is_anybody_about(now_s)
+    watch.doubt(now_s)
+    assert watch.is_anybody_about(now_s + 0.5) and not watch.is_anybody_about(now_s + 0.7), "what stands is known to after a moment"
 
 
 def test_who_stops_in_view_stays_there() -> None:
@@ -72,7 +79,6 @@ def test_who_stops_in_view_stays_there() -> None:
 def test_a_laser_that_looks_down_for_a_moment_does_not_lose_him() -> None:
     walk = [(4.0 - 0.2 * k, 0.0) for k in range(7)]
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 7)
-    assert watch.rows(now_s + 2.0)[0, 6] == 1.0
     assert watch.rows(now_s + 2.0)[0, 4] < 2.0
 
 
@@ -87,13 +93,16 @@ def test_what_stands_is_nobody_however_the_robot_moves(speed_mps: float, turn_ra
         heading = pose[2] + 0.5 * turn_radps * SCAN_S
         pose = (pose[0] + speed_mps * SCAN_S * math.cos(heading), pose[1] + speed_mps * SCAN_S * math.sin(heading), pose[2] + turn_radps * SCAN_S)
     watch, now_s = watched([(4.7, 3.7)] * 10, way, *things)
-    assert len(watch.rows(now_s)) == 0
+    assert not watch.is_anybody_about(now_s)
 
 
 def ring_of(name: str) -> SonarRing:
     platform = {"atrv2": ATRV2, "pioneer": PIONEER}[name]
     assert platform.devices.sonar is not None
     return SonarRing(platform.devices.sonar, outline_of(platform.body.outline_m))
+
+
+NOT_NEW = {name: np.zeros(ring_of(name).count, dtype=np.bool_) for name in ("atrv2", "pioneer")}
 
 
 def heard(name: str, way: list[Planar], shapes_at: list[tuple[Shape, ...]]) -> list[np.ndarray]:
@@ -106,7 +115,7 @@ def heard(name: str, way: list[Planar], shapes_at: list[tuple[Shape, ...]]) -> l
         ranges = np.zeros(ring.count)
         at_x, at_y = robot[0] + c * x - s * y, robot[1] + s * x + c * y
         Scene(World("hall", shapes=shapes)).cones(at_x, at_y, theta + robot[2], 0.3, 2.0 * ring.half_cone_rad, 5.0, ranges)
-        said.append(approach.look(ranges + noise.normal(0.0, 0.02, ring.count), robot, k * ROUND_S))
+        said.append(approach.look(ranges + noise.normal(0.0, 0.02, ring.count), robot, k * ROUND_S, NOT_NEW[name]))
     return said
 
 
@@ -140,7 +149,19 @@ def test_walls_and_posts_do_not_come_however_the_robot_moves(name: str, speed_mp
     watch = WalkerWatch(30.0)
     for k, found in enumerate(said):
         watch.take_echoes(found, k * ROUND_S)
-    assert len(watch.rows(1.0)) == 0
+    assert not watch.is_anybody_about(2.0)
+
+
+WALKS = {"goes": [1.0 + 0.1 * k for k in range(10)], "leaves": [0.5] * 5 + [2.5] * 5, "appears": [4.0] * 5 + [0.8] * 5}
+
+
+@pytest.mark.parametrize("walk", WALKS.values(), ids=WALKS)
+def test_a_ring_that_stands_hears_everything_that_moves(walk: list[float]) -> None:
+    said = heard("pioneer", [(0.0, 0.0, 0.0)] * 10, [(HALL, post(r, 0.0)) for r in walk])
+    watch = WalkerWatch(30.0)
+    for k, found in enumerate(said):
+        watch.take_echoes(found, k * ROUND_S)
+    assert watch.is_anybody_about(5.0)
 
 
 def test_a_wall_that_the_robot_drives_at_is_not_somebody() -> None:

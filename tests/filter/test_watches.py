@@ -103,6 +103,7 @@ def words(told: Callable[[float], tuple[float, float]], counted: Callable[[float
         ("turning only", lambda t: (0.0, 0.5), lambda t: (1.0, 1.0), True),
         ("the way is counted, the turn is not", lambda t: (0.4, 0.5), lambda t: (0.4 * t, 0.0), True),
         ("half of the way is lost", lambda t: (0.4, 0.0), lambda t: (0.2 * t, 0.0), False),
+        ("a turn that begins suddenly and late", lambda t: (0.4, -0.005 if t < 2.0 else -0.4), lambda t: (0.4 * t, -0.4 * max(0.0, t - 2.12)), False),
         ("to and fro", lambda t: (0.4 * (1 if int(t) % 2 else -1), 0.0), lambda t: (0.1 * math.sin(3.0 * t), 0.0), False),
     ],
 )

@@ -20,7 +20,7 @@ from .attacker import CROWDS, STREAMS
 from .conftest import Running
 
 ATTACKER = Path(__file__).with_name("attacker.py")
-ATTACK_S, PING_EVERY_S, WAIT_S = 0.7, 0.006, 20.0
+ATTACK_S, PING_EVERY_S, WAIT_S = 0.4, 0.006, 20.0
 LATER_MS, GROWTH_MB, TRIES = 20.0, 10.0, 4
 CODE = {
     "attribute": "too-large", "text": "too-large", "name": "too-large", "comment": "too-large", "white-space": "too-large", "mission": "too-large",
@@ -43,6 +43,7 @@ class Target(Running):
         self.on_step = lambda: self.robot.write("sick/scan", m.LaserScan(self.robot.time_s, 0.0, 0.01, scan))
         self.pump()
         self.polite = self.client(name="operator")
+        self.quiet_ms = self.under("burn")[1]  # with a program in the attacker's place that only needs the processor
 
     def under(self, attack: str) -> tuple[dict[str, Any], float]:
         """What the attacker was told, and the worst of a thousand pings meanwhile (ms)."""
@@ -77,12 +78,13 @@ def target() -> Iterator[Target]:
 @pytest.mark.parametrize("attack", [*STREAMS, *CROWDS, "storm"])
 def test_an_attack_hurts_nobody_but_himself(target: Target, attack: str) -> None:
     before_mb, deeds = target.rss_mb(), len(target.robot.did)
+    told, worst_ms = target.under(attack)
     for _ in range(TRIES):  # the machine may be busy with something else at any one time
-        _, quiet_ms = target.under("burn")
-        told, worst_ms = target.under(attack)
-        if worst_ms <= quiet_ms + LATER_MS:
+        if worst_ms <= target.quiet_ms + LATER_MS:
             break
-    assert worst_ms <= quiet_ms + LATER_MS
+        target.quiet_ms = target.under("burn")[1]
+        told, worst_ms = target.under(attack)
+    assert worst_ms <= target.quiet_ms + LATER_MS
     assert target.rss_mb() - before_mb < GROWTH_MB
     assert not {deed[0] for deed in target.robot.did[deeds:]} & {"run", "command"}
     if attack in CODE:

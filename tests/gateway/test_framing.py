@@ -10,7 +10,7 @@ from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
 
 LIMITS = Limits()
-Seen = list[tuple[str, int, int, bytes]]
+Seen = list[tuple[str, int, int, dict[str, str]]]
 
 
 def run(pieces: list[bytes], limits: Limits = LIMITS) -> tuple[Seen, FramingError | None]:
@@ -21,8 +21,8 @@ def run(pieces: list[bytes], limits: Limits = LIMITS) -> tuple[Seen, FramingErro
         for piece in pieces:
             seen.extend(framer.feed(piece))
     except FramingError as error:
-        return [(message.tag, message.line, message.column, message.raw) for message in seen], error
-    return [(message.tag, message.line, message.column, message.raw) for message in seen], None
+        return [(message.tag, message.line, message.column, message.attrib) for message in seen], error
+    return [(message.tag, message.line, message.column, message.attrib) for message in seen], None
 
 
 def bytewise(data: bytes) -> list[bytes]:

@@ -28,7 +28,7 @@ def read(stream: bytes, limits: Limits) -> tuple[list[object], str]:
     seen: list[object] = []
     try:
         for message in Framer(limits).feed(stream):
-            seen.append((message.tag, message.attrib, message.children, message.text, message.line, message.column, message.raw))
+            seen.append((message.tag, message.attrib, message.children, message.text, message.line, message.column))
     except FramingError as error:
         return seen, f"{error.code} {error.line}:{error.column}"
     return seen, ""

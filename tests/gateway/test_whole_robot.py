@@ -121,3 +121,25 @@ def test_a_long_session_validates(tmp_path: Path) -> None:
     codes = [answer.get("code") for answer in talk.heard if answer.tag == "error"]
     assert codes == ["out-of-range", "bad-mission", "read-only", "estopped", "unknown-module", "unknown-param", *["bad-mission"] * (len(faults) + 1)]
     assert len({answer.get("topic") for answer in talk.heard if answer.tag == "value"}) > 20
+
+
+HOSTILE = {
+    '<run node="GoTo" goal="nan;nan"/>': "bad-value", '<run node="GoTo" goal="inf;0"/>': "bad-value",
+    '<run node="GoTo" goal="1e400;0"/>': "bad-value", '<run node="GoTo" goal="1;1" max_speed_mps="nan"/>': "bad-value",
+    '<run node="GoTo goal=\'3;3\'/>&lt;include path=\'/etc/passwd\'/>&lt;GoTo" goal="1;1"/>': "unknown-node",
+    '<run node="../GoTo"/>': "unknown-node", '<run node="../GoTo" />': "unknown-node",
+    '<command target="motion" flags="2"><position>nan 0</position></command>': "bad-value",
+    '<command target="motion" flags="2"><position>1e400 0</position></command>': "bad-value",
+    '<command target="motion" flags="99999999999"/>': "invalid", '<command target="base" flags="0"/>': "invalid",
+    '<mission op="load" name="../../../../etc/passwd"/>': "bad-mission", '<mission op="load">/etc/passwd</mission>': "bad-mission",
+    '<mission op="load" name="patrol.xml/../t01.xml"/>': "bad-mission", '<set topic="operator/word"/>': "invalid",
+}  # fmt: skip
+
+
+def test_no_hostile_request_moves_the_robot(tmp_path: Path) -> None:
+    hostile = [text.replace(" ", f' id="h{number}" ', 1) for number, text in enumerate(HOSTILE)]
+    talk = Talk(tmp_path, {1.0: '<mission op="pause"/><lease op="acquire" ttl_s="60"/>', 3.0: "".join(hostile), 8.0: '<mission op="abort"/>'}, x=20.0)
+    told = {text: talk.told(f"h{number}")[0].get("code") for number, text in enumerate(HOSTILE)}
+    assert told == HOSTILE
+    assert set(talk.speeds(lambda t: 2.9 < t < 8.0)) <= {0.0}
+    assert "root:" not in str([answer.text for answer in talk.heard])

@@ -13,6 +13,7 @@ from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.map_kernels import clearances
 from pluto_bt.skills.motion_parameters import MotionParameters
 
 ANGLES = -math.pi / 2.0 + math.radians(0.5) * np.arange(361)
@@ -120,3 +121,24 @@ def test_clearance_is_the_distance_to_the_nearest_thing_but_for_eight_percent(se
     for a, b in here + rng.integers(-15, 15, (30, 2)):
         true = min(map.far_cells, float(np.hypot(things[:, 0] - a, things[:, 1] - b).min()))
         assert true - 1e-3 <= map.clearance[a, b] <= 1.09 * true + 1e-4
+
+
+@given(seed=st.integers(0, 1000))
+@settings(max_examples=10, deadline=None)
+def test_clearance_kept_up_to_date_bit_by_bit_is_that_of_a_whole_reckoning(seed: int) -> None:
+    """Things come and go, low ones are forgotten in time."""
+    rng = np.random.default_rng(seed)
+    map = LocalMap(MotionParameters())
+    memory_s = map.parameters.ground_memory_s
+    here = np.array(map.cell(0.0, 0.0))
+    for now_s in (1.0, 2.0, 1.5 + memory_s, 2.5 + memory_s):
+        come, go, low = here + rng.integers(-18, 18, (3, int(rng.integers(0, 6)), 2))
+        map.evidence[come[:, 0], come[:, 1]] = 6
+        map.evidence[go[:, 0], go[:, 1]] = -4
+        map.low_s[low[:, 0], low[:, 1]] = now_s
+        map._changed(float(here[0]), float(here[1]), 10.0)
+        map.refresh(now_s)
+        whole = np.full_like(map.clearance, map.far_cells)
+        oldest_s = max(0.0, now_s - memory_s) - 1e-3
+        clearances(map.evidence, map.low_s, oldest_s, 0, CELLS, 0, CELLS, whole, math.ceil(map.far_cells), map.far_cells)
+        assert np.array_equal(map.clearance, whole)

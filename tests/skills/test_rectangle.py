@@ -43,3 +43,17 @@ def test_a_point_lies_as_deep_whatever_frame_it_is_looked_at_from(x: float, y: f
     dx, dy = x - fx, y - fy
     px, py = math.cos(turn) * dx + math.sin(turn) * dy, math.cos(turn) * dy - math.sin(turn) * dx
     assert seen.depth_m(px, py) == pytest.approx(NORTH.depth_m(x, y), abs=1e-9)
+
+
+@given(x=NUMBERS, y=NUMBERS, depth_m=st.floats(0.0, 20.0))
+def test_the_nearest_point_inside_is_as_deep_as_asked_or_as_the_rectangle_is_wide(x: float, y: float, depth_m: float) -> None:
+    point = NORTH.inside(x, y, depth_m)
+    deepest_m = min(NORTH.base_m, 0.5 * NORTH.height_m)
+    assert NORTH.depth_m(*point) >= min(depth_m, deepest_m) - 1e-9
+    if NORTH.depth_m(x, y) >= depth_m:
+        assert point == pytest.approx((x, y)), "who is deep enough stays"
+
+
+def test_who_comes_home_stops_in_front_of_the_base() -> None:
+    assert EAST.inside(1.0, 2.0, 0.2) == pytest.approx((1.2, 2.0))
+    assert NORTH.inside(1.0, 2.0, 0.2) == pytest.approx((1.0, 2.2))

@@ -9,10 +9,14 @@ import pytest
 
 from pluto_bt.bench.fault_plays import Play
 from pluto_bt.bench.faults import play_pair
+from pluto_bt.bench.why_score import ASKED_AFTER_S
 from pluto_bt.blackboard.codes import LinkStatus, Setter
 from pluto_bt.blackboard.messages import Pose
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.record.box import open_box
 from pluto_bt.runner import Runner
+from pluto_bt.source import Faults
+from pluto_bt.trees.why_box import why_at
 from tests.fault_cases import CASES, GOES_ON, HALL, T_S, FaultCase
 
 GOAL = (4.0, 0.5)
@@ -23,7 +27,14 @@ def played(case: FaultCase, folder: Path) -> Play:
     script = f'<at t="{T_S:g}">{case.script}</at>'
     (folder / "hall.xml").write_text(HALL.format(platform=case.platform, script=script), encoding="utf-8")
     ports = [f"goals={GOAL[0]},{GOAL[1]}", "timeout_s=60"]
-    return Play(read_inputs(Request("patrol.xml", world=str(folder / "hall.xml"), port=ports)), max_time_s=120.0)
+    return Play(read_inputs(Request("patrol.xml", world=str(folder / "hall.xml"), port=ports)), max_time_s=120.0, record=folder / "a.mcap")
+
+
+def first_cause(folder: Path, at_s: float | None) -> str:
+    """The code of the first cause that `why` gives for the recorded run."""
+    box = open_box(folder / "a.mcap", "a.mcap", Faults())
+    first = None if box is None else why_at(box, at_s).first
+    return "" if first is None else first.code
 
 
 @pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
@@ -36,6 +47,8 @@ def test_a_fault_has_the_outcome_that_stands_beside_it(case: FaultCase, tmp_path
     assert not case.said or case.said in play.words or case.said in [event.code for event in play.events]
     if result.result == "SUCCESS":
         assert math.dist(result.final_pose[:2], GOAL) < SUCCESS_WITHIN_M, "and it is really there"
+    if case.asked:
+        assert first_cause(tmp_path, T_S + ASKED_AFTER_S if result.result == "SUCCESS" else None) == case.asked
 
 
 def test_a_fatal_laser_shows_status_7_and_the_mission_only_waits(tmp_path: Path) -> None:
@@ -50,6 +63,7 @@ def test_a_fatal_laser_shows_status_7_and_the_mission_only_waits(tmp_path: Path)
 def test_two_faults_at_once_in_a_place_drawn_at_random_do_no_harm_and_are_told(seed: int) -> None:
     pair = play_pair(seed)
     assert pair.complaints == [], pair.text
+    assert [one.text for one in pair.asked if not one.is_right] == [], pair.text
 
 
 def told_where_it_is(script: str, at_s: float, off_m: float, folder: Path) -> Play:

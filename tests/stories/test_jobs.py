@@ -48,12 +48,12 @@ def test_moveto_finds_its_way_through_a_town_it_has_never_seen(tell: Any, seed: 
 
 def test_moveto_goes_end_to_end_of_a_street_of_three_hundred_metres(scenario: Play, tmp_path: Path) -> None:
     text = shared_file("data", "worlds", "kth_yard.xml").read_text(encoding="utf-8")
-    robot = '<robot platform="atrv2" x="104" y="183" theta_deg="-90" ideal="true"/>'
+    robot = '<robot platform="atrv2" x="104" y="183" theta_deg="-90"/>'
     (tmp_path / "kth.xml").write_text(re.sub("<robot[^>]*/>", robot, text))
     (tmp_path / "mission.xml").write_text(MISSION.format(body='<MoveTo goal="5;36" max_speed_mps="0.9"/>'))
     run = scenario(str(tmp_path / "kth.xml"), mission=str(tmp_path / "mission.xml"), max_time_s=1200.0)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
-    assert math.dist(run.final_pose[:2], (5.0, 36.0)) < 0.5
+    assert math.dist(run.final_pose[:2], (5.0, 36.0)) < 0.3 + 0.01 * run.distance_m
     assert run.min_clearance_m > 0.8, "in the middle of the street"
 
 
@@ -67,11 +67,13 @@ def test_moveto_drives_round_a_kerb_that_a_level_scan_passes_over(tell: Any) -> 
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
 
 
-def test_moveto_among_people_who_do_not_yield_runs_into_nobody(tell: Any) -> None:
+@pytest.mark.parametrize("platform", ["atrv2", "pioneer"])
+def test_moveto_among_people_who_do_not_yield_waits_for_them_runs_into_nobody_and_arrives(tell: Any, platform: str) -> None:
     people = '<actor id="one" r="0.25" speed="1" loop="true">20,3 5,5</actor><actor id="other" r="0.25" speed="0.5" loop="true">12,2 16,6</actor>'
-    run = tell('<MoveTo goal="22;4" timeout_s="600"/>', lane(people), max_time_s=700.0)
-    assert run.collisions == 0, "whether it gets past is theirs to say; that it runs into nobody is the robot's"
-    assert run.result == "SUCCESS" or run.reason in ("timeout", "no-path", "stuck", "lost", "bumper"), run.text
+    run = tell('<MoveTo goal="22;4" timeout_s="600"/>', lane(people, platform), max_time_s=700.0)
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert math.dist(run.final_pose[:2], (22.0, 4.0)) < 0.8
+    assert run.sim_time_s < 300.0, "they hold it up, but not for ever"
 
 
 def test_moveto_says_no_path_where_every_way_is_shut(tell: Any) -> None:
@@ -98,7 +100,7 @@ def test_explore_covers_a_yard_comes_home_and_never_leaves_its_rectangle(tell: A
     run = tell(f'<Explore rectangle="{b:.2f};{h:.2f}"/>', yard.text, max_time_s=1500.0)
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
     assert math.dist(run.final_pose[:2], yard.start[:2]) < 0.3 + 0.02 * run.distance_m
-    assert all(-0.1 <= p.pose[0] - yard.start[0] <= h and abs(p.pose[1] - yard.start[1]) <= b for p in run.track)
+    assert all(-1e-3 <= p.pose[0] - yard.start[0] <= h and abs(p.pose[1] - yard.start[1]) <= b for p in run.track)
     shown = run.runner.system.board.newest("map/local").value
     assert isinstance(shown, LocalMapState)
     assert yard.covered_share(shown) > 0.9

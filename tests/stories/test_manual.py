@@ -360,8 +360,21 @@ def test_with_both_off_the_stop_filter_still_prevents_contact(robot: Make, flags
         r.run(1.0)
     assert r.system.simulator.collisions == []
     assert r.pose[0] < 2.42
-    if flags != 2:  # goto backs off from what holds it, and tries again
-        assert r.status.element[0] != 0 and r.status.data == (0.0, 0.0)
+    assert r.status.element[0] != 0 and r.status.data == (0.0, 0.0)
+
+
+def test_a_straight_goto_that_is_blocked_is_stuck_where_it_stands(robot: Make) -> None:
+    r = robot(WALL.format(x=3.0))
+    r.order(2, (6.0, 0.0), (0.9, 0.0))
+    farthest_m = [0.0]
+
+    def is_stuck() -> bool:
+        farthest_m.append(max(farthest_m[-1], r.pose[0]))
+        return bool(r.status.element[1] == 2)
+
+    assert r.run(20.0, is_stuck), r.status
+    assert (r.status.reason, r.system.simulator.collisions) == ("stuck", [])
+    assert farthest_m[-1] - r.pose[0] < 0.01 and abs(r.pose[1]) < 0.1, "it neither backs nor looks for a way around: it cannot see"
 
 
 def test_a_rectangle_does_not_limit_what_is_passed_through(robot: Make) -> None:

@@ -1,0 +1,55 @@
+"""A whole robot on patrol in real time, in a process of its own, which tells how punctual its ticks are. For the gateway's benchmarks.
+
+`python -m pluto_bt.bench.live_robot` prints the gateway's port. For each line it reads it prints, as JSON, how late the ticks have been since the
+last line (ms), the gateway's process, the mission's state, and the events so far; it ends with its input.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import threading
+
+import numpy as np
+
+from pluto_bt.blackboard.messages import Event, MissionState
+from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.runner import make_runner
+from pluto_bt.runtime.clock import NS
+
+PERIOD_MS = 100.0
+
+
+def lateness_ms(ticks_ms: list[float]) -> list[float]:
+    """How much later than the most punctual ticks, which came at their due times, each one came."""
+    phases = np.array(ticks_ms or [0.0]) % PERIOD_MS
+    around = (phases - np.median(phases) + PERIOD_MS / 2) % PERIOD_MS
+    late: list[float] = np.clip(around - np.percentile(around, 5.0), 0.0, None).tolist()
+    return late
+
+
+def main() -> None:
+    """Patrol until the input ends."""
+    request = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=-1"])
+    events: list[Event] = []
+    runner = make_runner(read_inputs(request), realtime=True, gateway="127.0.0.1:0", on_event=events.append)
+    system = runner.system
+    ticks_ms: list[float] = []
+    system.executive.on_ticked = lambda activities, lines: ticks_ms.append(system.clock.now_ns() / (NS / 1000))
+    thread = threading.Thread(target=runner.run)
+    thread.start()
+    gateway = next(part.component for part in system.parts if part.module.name == "gateway")
+    print(gateway.address.port, flush=True)  # type: ignore[attr-defined]
+    for _ in sys.stdin:
+        late_ms, ticks_ms[:] = lateness_ms(ticks_ms), []
+        mission = system.board.newest("mission/state")
+        state = mission.value.state if mission is not None and isinstance(mission.value, MissionState) else ""
+        p50, p999, worst = np.percentile(late_ms, [50.0, 99.9, 100.0])
+        told = {"ticks": len(late_ms), "p50_ms": p50, "p999_ms": p999, "worst_ms": worst, "pid": gateway.pid, "mission": state}  # type: ignore[attr-defined]
+        print(json.dumps(told | {"events": [event.code for event in events]}), flush=True)
+    runner.loop.interrupt()
+    thread.join()
+
+
+if __name__ == "__main__":
+    main()

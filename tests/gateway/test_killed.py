@@ -1,0 +1,90 @@
+"""The gateway's process is killed while a whole robot is on patrol: the mission goes on, clients come back, and a lease keeps its word."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from pluto_bt.gateway.client import Client, GatewayError
+from pluto_bt.runtime.clock import NS, wall_ns
+
+BACK_S = 6.0  # 2 s on a machine that has nothing else to do (pluto bench gateway)
+
+
+class Live:
+    """A patrol in a process of its own."""
+
+    def __init__(self) -> None:
+        command = [sys.executable, "-m", "pluto_bt.bench.live_robot"]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        assert self.process.stdout is not None
+        self.port = int(self.process.stdout.readline())
+
+    def tells(self) -> dict[str, Any]:
+        """Pid of the gateway, state of the mission, events, lateness."""
+        assert self.process.stdin is not None and self.process.stdout is not None
+        self.process.stdin.write("\n")
+        self.process.stdin.flush()
+        return json.loads(self.process.stdout.readline())  # type: ignore[no-any-return]
+
+    def client(self, **given: str) -> Client:
+        return Client(port=self.port, timeout_s=20.0, **given)
+
+    def kill_gateway(self) -> float:
+        """SIGKILL; seconds until a new client is answered."""
+        os.kill(int(self.tells()["pid"]), signal.SIGKILL)
+        begun_ns = wall_ns()
+        while wall_ns() - begun_ns < 30 * NS:
+            try:
+                with self.client() as client:
+                    client.request("ping")
+                return (wall_ns() - begun_ns) / NS
+            except GatewayError:
+                continue
+        raise AssertionError("it never came back")
+
+
+@pytest.fixture(scope="module")
+def live() -> Iterator[Live]:
+    one = Live()
+    yield one
+    assert one.process.stdin is not None
+    one.process.stdin.close()
+    one.process.wait(30.0)
+
+
+def until(client: Client, state: str) -> None:
+    """Wait for the mission to be so."""
+    while client.request("mission", op="state").get("state") != state:
+        client.receive(0.02)
+
+
+def test_a_mission_without_a_lease_does_not_notice(live: Live) -> None:
+    with live.client() as client:
+        until(client, "running")
+    assert live.kill_gateway() < BACK_S
+    told = live.tells()
+    assert told["mission"] == "running" and {"gateway-lost", "gateway-restarted"} <= set(told["events"])
+
+
+@pytest.mark.parametrize(("session", "on_loss", "state"), [("", "stop", "paused"), ("", "continue", "running"), ("s", "stop", "running")])
+def test_a_lease_keeps_its_word(live: Live, session: str, on_loss: str, state: str) -> None:
+    with live.client() as client:
+        client.request("mission", op="resume") if live.tells()["mission"] == "paused" else None
+        until(client, "running")
+    with live.client(name="anna", session=session) as holder:
+        holder.lease("acquire", ttl_s=30, on_loss=on_loss)
+        assert live.kill_gateway() < BACK_S
+    with live.client(name="anna", session=session) as again:
+        until(again, state)
+        held = again.lease("query")
+        assert held.get("mine") == ("true" if session else "false"), "who has a named session may come back within his ttl"
+        if session:
+            again.lease("release")
