@@ -116,6 +116,10 @@ class Client:
         """For `select`; -1 while there is no connection."""
         return -1 if self._line is None else self._line.fileno()
 
+    def now_s(self) -> float:
+        """Seconds of the client's clock."""
+        return self._clock()
+
     @property
     def pending(self) -> deque[Element]:
         """What came and was not asked for."""

@@ -47,7 +47,7 @@ def tell_progress(told: Element, on_progress: OnProgress) -> None:
 def command_body(position: Sequence[float], velocity: Sequence[float], acceleration: Sequence[float], force: Sequence[float]) -> str:
     """The children of `<command>`; what is empty is left out."""
     parts = (("position", position), ("velocity", velocity), ("acceleration", acceleration), ("force", force))
-    return "".join(f"<{name}>{numbers(map(float, values))}</{name}>" for name, values in parts if len(values))
+    return "".join(f"<{name}>{numbers([float(value) for value in values])}</{name}>" for name, values in parts if len(values))
 
 
 def hello_of(name: str, session: str, token: str) -> dict[str, str]:

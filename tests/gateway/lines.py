@@ -5,6 +5,7 @@ from __future__ import annotations
 from pluto_bt.gateway.backoff import Backoff
 from pluto_bt.gateway.client import Client
 from pluto_bt.gateway.local import LocalClient, LocalGateway
+from pluto_bt.gateway.port import RobotPort
 
 from .robot import FakeRobot
 
@@ -59,9 +60,9 @@ class Bench:
         is_down: no connection is taken. is_silent: nothing comes back. is_deaf: what is sent is lost.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, port: RobotPort | None = None) -> None:
         self.robot = FakeRobot()
-        self.gateway = LocalGateway(self.robot)
+        self.gateway = LocalGateway(port or self.robot)
         self.now_s = 0.0
         self.lines: list[Line] = []
         self.tried_s: list[float] = []
