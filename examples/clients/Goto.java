@@ -52,7 +52,7 @@ public final class Goto {
         say("<" + tag + " id=\"" + tag + "\" " + attributes + "/>");
         for (Element heard; (heard = hear()) != null; show(heard)) {
             if (heard.getTagName().equals("error")) {
-                isOver = true; // refused: nothing moves because of us, and nothing is ours to stop
+                letGo(); // refused: nothing moves because of us, and nothing is ours to stop
                 throw new IOException(heard.getAttribute("code") + ": " + heard.getTextContent());
             }
             if (heard.getAttribute("id").equals(tag)) {
@@ -85,14 +85,21 @@ public final class Goto {
         ask("run", String.format(Locale.ROOT, "node=\"GoTo\" goal=\"%s;%s\" deadline_s=\"120\"", x, y));
         for (Element heard; (heard = hear()) != null; show(heard)) {
             if (heard.getTagName().equals("result")) {
-                isOver = true;
                 renewal.shutdownNow();
                 System.out.println("result " + heard.getAttribute("state") + " " + heard.getAttribute("reason"));
-                say("<lease op=\"release\"/>");
+                letGo();
                 return heard.getAttribute("state").equals("succeeded") ? 0 : 1;
             }
         }
         throw new IOException("the robot closed the connection");
+    }
+
+    /** Give the lease back, and wait until that is heard: who leaves with the lease in hand stops the robot. */
+    private void letGo() throws Exception {
+        isOver = true;
+        say("<lease id=\"release\" op=\"release\"/>");
+        for (Element heard = hear(); heard != null && !heard.getAttribute("id").equals("release"); heard = hear()) {
+        }
     }
 
     /** The lease says: this program is alive. If it hangs or dies, the robot stops within TTL_S. */

@@ -127,6 +127,14 @@ private:
     std::string buffer_;
 };
 
+// Give the lease back, and wait until that is heard: who leaves with the lease in hand stops the robot.
+int let_go(Robot& robot, int code) {
+    robot.say(R"(<lease id="release" op="release"/>)");
+    for (auto heard = robot.hear(5.0); heard && heard->attribute("id") != "release"; heard = robot.hear(5.0)) {
+    }
+    return code;
+}
+
 int drive(Robot& robot, const std::string& goal) {
     robot.say(R"(<hello version="1.0" name="c++ example"/>)");
     robot.say(R"(<subscribe topic="Localization/Pose" max_rate_hz="2"/>)");
@@ -146,12 +154,12 @@ int drive(Robot& robot, const std::string& goal) {
         if (!heard) continue;
         if (heard->tag == "error" && heard->attribute("id") != "renew") {
             std::cerr << heard->attribute("code") << ": " << plain(heard->inside) << std::endl;
-            return 1;
+            return heard->attribute("fatal") == "true" ? 1 : let_go(robot, 1);
         }
         if (heard->attribute("id") == "lease") robot.say(R"(<run node="GoTo" goal=")" + goal + R"(" deadline_s="120"/>)");
         if (heard->attribute("id") == "stop") {
             std::cout << "stopped" << std::endl;
-            return 130;
+            return let_go(robot, 130);
         }
         if (heard->tag == "value") {
             double x = 0.0, y = 0.0;
@@ -162,8 +170,7 @@ int drive(Robot& robot, const std::string& goal) {
         if (heard->tag == "progress") std::cout << "progress " << heard->attribute("state") << ' ' << heard->attribute("text") << std::endl;
         if (heard->tag == "result") {
             std::cout << "result " << heard->attribute("state") << ' ' << heard->attribute("reason") << std::endl;
-            robot.say(R"(<lease op="release"/>)");
-            return heard->attribute("state") == "succeeded" ? 0 : 1;
+            return let_go(robot, heard->attribute("state") == "succeeded" ? 0 : 1);
         }
     }
 }

@@ -10,18 +10,18 @@ if (y === undefined) {
 
 const TTL_S = 3;
 let begun = false;
-let failed = 1;
+let exitCode; // known once it is over
 const robot = net.createConnection({ host, port: Number(port) });
 robot.setNoDelay(true);
 robot.setEncoding("utf8");
 
 const say = (message) => robot.write(message + "\n");
-const end = (code, text) => {
-  if (text) (code ? console.error : console.log)(text);
-  failed = code;
+// It is over: give the lease back; the answer to that ends the conversation. Who leaves with the lease in hand stops the robot.
+const end = (code) => {
+  if (exitCode !== undefined) return;
+  exitCode = code;
   clearInterval(renewal);
-  if (!robot.writable) process.exit(code);
-  say('<lease op="release" id="release"/>'); // its answer ends the conversation, see below
+  say('<lease op="release" id="release"/>');
 };
 
 // A tag, its attributes and its text: enough for messages without children of their own, and for <pose> in a <value>.
@@ -42,7 +42,8 @@ const child = (message, name) => message.inside.match(new RegExp(`<${name}>([^<]
 function hear({ tag, attributes, ...rest }) {
   const id = attributes.id;
   if (tag === "error" && id !== "release" && id !== "renew") {
-    end(1, `${attributes.code}: ${plain(rest.inside)}`);
+    console.error(`${attributes.code}: ${plain(rest.inside)}`);
+    end(1);
   } else if (tag === "value") {
     const [px, py] = child(rest, "pose").split(" ").map(Number);
     console.log(`pose ${px.toFixed(2)} ${py.toFixed(2)}`);
@@ -54,7 +55,8 @@ function hear({ tag, attributes, ...rest }) {
     console.log(`progress ${attributes.state} ${attributes.text}`);
   } else if (tag === "result") {
     begun = false;
-    end(attributes.state === "succeeded" ? 0 : 1, `result ${attributes.state} ${attributes.reason}`);
+    console.log(`result ${attributes.state} ${attributes.reason}`);
+    end(attributes.state === "succeeded" ? 0 : 1);
   } else if (id === "release") {
     robot.end();
   }
@@ -75,11 +77,12 @@ robot.on("error", (error) => {
   console.error(`no robot: ${error.message}`);
   process.exit(1);
 });
-robot.on("close", () => process.exit(failed));
+robot.on("close", () => process.exit(exitCode ?? 1));
 
 // The lease says: this program is alive. If it hangs or dies, the robot stops within TTL_S.
 const renewal = setInterval(() => begun && say('<lease op="renew" id="renew"/>'), (TTL_S * 1000) / 3);
 process.on("SIGINT", () => {
   say('<stop id="stop"/>'); // first of all
-  end(130, "stopped");
+  console.log("stopped");
+  end(130);
 });
