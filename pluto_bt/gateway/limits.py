@@ -28,7 +28,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     hello_s: Annotated[Seconds, Meta(description="time for hello where a token is demanded, and in an operator's place")] = 3.0
     idle_s: Annotated[Seconds, Meta(description="time without any byte from the client")] = 60.0
     outstanding: Annotated[Count, Meta(description="requests of one client that wait for the executive; more are answered with busy")] = 64
-    backlog_bytes: Annotated[Bytes, Meta(description="replies that one client may leave unread before it is a slow consumer")] = 256 * 1024
+    backlog_bytes: Annotated[Bytes, Meta(description="replies that one client may leave unread before it is a slow consumer")] = 512 * 1024
     write_mark_bytes: Annotated[Bytes, Meta(description="unsent bytes above which values wait, and old ones are dropped")] = 16 * 1024
     linger_s: Annotated[Seconds, Meta(description="after a fatal error input is thrown away for this long, so that the error arrives")] = 1.0
     discard_bytes: Annotated[Bytes, Meta(description="but no more than this; then nothing is read any more")] = 16 * 1024 * 1024

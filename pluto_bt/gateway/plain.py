@@ -17,6 +17,9 @@ _FEW, _MANY = (re.compile(f"[ \\t\\r\\n]*<({_NAME})" + f"(?:{_ATTRIBUTE}" * n + 
 _CHILD = re.compile(f"<({_NAME})>([ !-%'-;=?-~]*)</\\1>")  # nor with >: the parser knows where that may stand
 
 
+NO_ATTRIBUTES: dict[str, str] = {}  # of most children; nobody changes it
+
+
 class Child(msgspec.Struct, frozen=True, gc=False):
     """An element inside a message; `is_leaf`: with text alone inside."""
 
@@ -57,4 +60,4 @@ def take(text: str, at: int) -> Plain | None:
     inner = _CHILD.findall(text, end, close) if close > end else None
     if not inner or sum([2 * len(name) + len(word) for name, word in inner]) + 5 * len(inner) != close - end:  # something stands between them
         return None
-    return tag, attrib, tuple([Child(name, {}, word) for name, word in inner]), start, close + len(tag) + 3
+    return tag, attrib, tuple([Child(name, NO_ATTRIBUTES, word) for name, word in inner]), start, close + len(tag) + 3

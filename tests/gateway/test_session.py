@@ -350,3 +350,35 @@ def test_a_robot_that_raises_is_an_internal_error_and_no_more(story: Story) -> N
     story.robot.modules = lambda: 1 / 0  # type: ignore[method-assign,assignment,return-value]
     (error,) = story.says(client, "<modules/>")
     assert (error.get("code"), error.text) == ("internal", "ZeroDivisionError: division by zero")
+
+
+@pytest.mark.parametrize(
+    ("token", "after_s", "unread_bytes", "code"),
+    [
+        ("", 59.9, 0, ""), ("", 60.0, 0, "timeout"), ("", 1.0, 512 * 1024, ""), ("", 1.0, 512 * 1024 + 1, "slow-consumer"),
+        ("secret", 2.9, 0, ""), ("secret", 3.0, 0, "timeout"),
+    ],
+)  # fmt: skip
+def test_silence_and_unread_replies_end_a_connection(token: str, after_s: float, unread_bytes: int, code: str) -> None:
+    session = Story(token=token).gateway.hub.open(0.0)
+    session.tick(after_s, unread_bytes)
+    said = session.to_send(after_s, 0)
+    assert (session.closing, said != b"") == (code != "", code != "")
+    assert code == "" or etree.fromstring(said).get("code") == code
+
+
+def test_a_stranger_in_an_operators_place_gives_way() -> None:
+    story = Story(Limits(clients=3, operator_places=2))
+    strangers = [story.client() for _ in range(3)]
+    operator = story.client('<hello name="shell"/>')
+    assert [brief(story.hears(stranger)) for stranger in strangers] == [[], ["error too-many-connections"], []]
+    assert brief(story.says(operator, "<ping/>")) == ["pong"]
+
+
+def test_what_a_client_has_just_changed_is_what_he_gets(story: Story) -> None:
+    client = story.client()
+    for i in range(30):
+        (ok, value) = story.says(client, f'<set topic="operator/word"><value>{i}</value></set><get topic="operator/word"/>')
+        assert (ok.tag, value.findtext("value")) == ("ok", str(i))
+        for _ in range(i % 15):
+            story.step()
