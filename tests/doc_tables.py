@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -15,6 +16,7 @@ from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.codes import STATUS_ENUMS, code_name
 from pluto_bt.gateway.commands import COMMANDS
 from pluto_bt.gateway.parse import _FROM_CONTENT
+from pluto_bt.gateway.proxies import PROXIES, Proxy
 from pluto_bt.gateway.requests import ELEMENTS
 from pluto_bt.maps import fault_table
 from pluto_bt.modules.robot_file import SHIPPED, RobotFile, load_robot_file
@@ -235,6 +237,17 @@ def shell() -> str:
     return table(("command", "meaning"), ((f"`{command.usage}`", command.doc) for command in COMMANDS.values()))
 
 
+def proxies() -> str:
+    """Each proxy with its own methods; those that every proxy has stand in the text."""
+    rows = []
+    for proxy in PROXIES:
+        names = [name for kind in reversed(proxy.__mro__) if kind not in Proxy.__mro__ for name in vars(kind) if not name.startswith("_")]
+        methods = [name for name in dict.fromkeys(names) if inspect.isfunction(getattr(proxy, name))]
+        told = [f"`{name}({', '.join(list(inspect.signature(getattr(proxy, name)).parameters)[1:])})`" for name in methods]
+        rows.append((f"`{proxy.__name__}`", f"`{proxy.MODULE}`", " ".join(told), (proxy.__doc__ or "").strip().split("\n")[0]))
+    return table(("proxy", "module", "methods", "what it is"), rows)
+
+
 def modules() -> str:
     """THE table of modules."""
     rows = ((f"`{row.name}`", row.group, f"{row.period_s:g} s" if row.period_s else "–", ", ".join(row.wakes) or "–", ", ".join(row.needs) or "–",
@@ -271,6 +284,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "status-codes": status_codes,
     "requests": requests,
     "shell": shell,
+    "proxies": proxies,
     "modules": modules,
     "tutorials": tutorials,
 }
