@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from xml.etree import ElementTree
 
 from pluto_bt.gateway.ask import Ask, Fate, fate
-from pluto_bt.gateway.errors import GatewayError, NoAnswerError, NoConnectionError, TurnedAwayError, error_in
+from pluto_bt.gateway.errors import BadRequestError, GatewayError, NoAnswerError, NoConnectionError, TurnedAwayError, error_in
 from pluto_bt.gateway.xml_text import Attribute, element
 
 Element = ElementTree.Element
@@ -64,8 +64,8 @@ class Dialogue:
         given = {"id": self._new_id(), **attributes}
         id = str(given["id"])
         one = Ask(id, tag, (element(tag, given, body) + "\n").encode(), now_s + self.timeout_s, is_run=is_run)
-        if self.final is not None:
-            one.fail(self.final)
+        if self.final is not None or id in self._asks:
+            one.fail(self.final or BadRequestError("invalid", f'the id "{id}" is that of another request, which is not answered yet'))
             return one
         self._asks[id] = one
         self._fates[id] = fate(tag, given, "session" in self._hello)

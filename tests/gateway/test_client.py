@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from xml.etree import ElementTree
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.client import Client
+from pluto_bt.gateway.dialogue import Dialogue
 from pluto_bt.gateway.errors import (
     BadRequestError,
     EstoppedError,
@@ -213,6 +218,28 @@ def test_what_speaks_no_xml_is_no_gateway(bench: Bench) -> None:
     client.dialogue.feed(b"HTTP/1.1 400 Bad Request\r\n", bench.now_s)
     with pytest.raises(TurnedAwayError, match="what answers is no gateway"):
         client.request("ping")
+
+
+@given(st.lists(st.integers(1, 40), max_size=20))
+def test_a_stream_in_pieces_says_what_it_says_whole(sizes: list[int]) -> None:
+    lines = '<value topic="tree" seq="1"><text>grün &amp; 日本</text></value>\n \n<event level="info" seq="2">x</event>\n'.encode()
+    whole, pieces = Dialogue({}, 5.0, "c"), Dialogue({}, 5.0, "c")
+    whole.feed(lines, 0.0)
+    at = 0
+    for size in [*sizes, len(lines)]:
+        pieces.feed(lines[at : at + size], 0.0)
+        at += size
+    assert [ElementTree.tostring(message) for message in pieces.inbox] == [ElementTree.tostring(message) for message in whole.inbox]
+    assert [message.tag for message in pieces.inbox] == ["value", "event"] and pieces.final is None
+
+
+def test_an_id_that_is_not_answered_is_not_used_again(bench: Bench) -> None:
+    client = bench.client()
+    client.send("ping", id="p", t="1")
+    with pytest.raises(BadRequestError, match="another request"):
+        client.request("ping", id="p", t="2")
+    client.receive(0.1)
+    assert client.request("ping", id="p", t="3").get("t") == "3"
 
 
 def test_an_answer_that_does_not_come_is_told_and_one_that_comes_late_is_not_heard(bench: Bench) -> None:

@@ -172,3 +172,18 @@ def test_what_this_robot_has_not_is_said_by_name(whole: Whole, anna: Client) -> 
             proxy(anna)
         why = "it has world, base" if proxy.MODULE in known else "it is not there yet and comes with a later version"
         assert f'no module "{proxy.MODULE}": {why}' in error.value.text
+
+
+def test_a_proxy_lets_go_of_its_own_client_alone(whole: Whole, anna: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[Client] = []
+
+    def make(name: str) -> Client:
+        made.append(whole.client(name=name))
+        return made[-1]
+
+    monkeypatch.setattr("pluto_bt.gateway.proxies.proxy.Client", make)
+    with LocProxy(interfaces=9) as loc, LocProxy(anna) as other:
+        assert loc.get_pose(0).stamp_s > 0.0 and other.client is anna
+    with pytest.raises(BadRequestError, match="no module"):
+        next(proxy for proxy in PROXIES if proxy.MODULE == "weather")()
+    assert anna.is_connected and [client.is_connected for client in made] == [False, False]
