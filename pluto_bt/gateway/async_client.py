@@ -9,11 +9,12 @@ import ssl
 from collections import deque
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from types import TracebackType
-from typing import Self, cast
+from typing import Self
 from xml.etree.ElementTree import Element
 
 from pluto_bt.gateway.ask import Ask
-from pluto_bt.gateway.backoff import AGAIN, Backoff
+from pluto_bt.gateway.async_line import Ear, changes
+from pluto_bt.gateway.backoff import AGAIN, STEADY_S, Backoff
 from pluto_bt.gateway.client import new_ids
 from pluto_bt.gateway.dialogue import Dialogue
 from pluto_bt.gateway.errors import GatewayError, NoAnswerError, NoConnectionError
@@ -39,6 +40,7 @@ class AsyncClient:
         self._has_hello = bool(name or session or token)
         self.dialogue = Dialogue(hello_of(name, session, token), timeout_s, new_ids(session))
         self._wire: asyncio.Transport | None = None
+        self._attempt, self._opened_s = 0, 0.0
         self._heard = asyncio.Event()
         self._timer: asyncio.TimerHandle | None = None
         self._coming_back: asyncio.Task[None] | None = None
@@ -82,7 +84,7 @@ class AsyncClient:
     async def request(self, tag: str, body: str = "", /, **attributes: Attribute) -> Element:
         """Say something and wait for the answer. Raises: GatewayError if it is an error, or does not come in time."""
         one = self._ask(tag, body, attributes)
-        await _changes(one, lambda: one.is_over)
+        await changes(one, lambda: one.is_over)
         return one.answer()
 
     async def subscribe(self, topic: str, max_rate_hz: float = 0.0, on_change: bool = False) -> str:
@@ -122,7 +124,7 @@ class AsyncClient:
         one = self._ask("run", "", {"node": node, "deadline_s": deadline_s, **ports}, is_run=True)
         try:
             while not one.is_over:
-                await _changes(one, lambda: bool(one.is_over or one.told))
+                await changes(one, lambda: bool(one.is_over or one.told))
                 while one.told:
                     tell_progress(one.told.popleft(), on_progress)
         except GatewayError:
@@ -198,15 +200,15 @@ class AsyncClient:
         host, port = self._address
         try:
             async with asyncio.timeout(self.timeout_s):
-                await self._loop.create_connection(lambda: _Ear(self), host, port, ssl=self._tls)
+                await self._loop.create_connection(lambda: Ear(self), host, port, ssl=self._tls)
         except OSError as error:  # TimeoutError is one
             text = f"no gateway at {self._place}: {error.strerror or error}; is a run with --gateway going on?"
             raise NoConnectionError("no-connection", text) from None
 
     def opened(self, wire: asyncio.Transport) -> None:
         """The line says that it stands."""
-        self._wire = wire
-        self.dialogue.opened(self._loop.time())
+        self._wire, self._opened_s = wire, self._loop.time()
+        self.dialogue.opened(self._opened_s)
         self._turn()
 
     def heard(self, data: bytes) -> None:
@@ -228,41 +230,14 @@ class AsyncClient:
         self._turn()
 
     async def _come_back(self, backoff: Backoff) -> None:
-        attempt = 0
+        if self._loop.time() - self._opened_s >= STEADY_S:
+            self._attempt = 0
         while self._wire is None and self.dialogue.final is None:
-            await self._wait(backoff.delay_s(attempt))
-            attempt += 1
+            self._attempt += 1
+            await self._wait(backoff.delay_s(self._attempt - 1))
             with contextlib.suppress(NoConnectionError):
                 await self._open()
 
     @property
     def _place(self) -> str:
         return f"{self._address[0]}:{self._address[1]}"
-
-
-class _Ear(asyncio.Protocol):
-    """One connection, as asyncio calls it."""
-
-    def __init__(self, client: AsyncClient) -> None:
-        self._client = client
-        self._wire: asyncio.Transport | None = None
-
-    def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self._wire = cast(asyncio.Transport, transport)  # uvloop's transports are of no asyncio class
-        self._client.opened(self._wire)
-
-    def data_received(self, data: bytes) -> None:
-        self._client.heard(data)
-
-    def connection_lost(self, exc: Exception | None) -> None:
-        assert self._wire is not None
-        self._client.lost(self._wire, exc)
-
-
-async def _changes(one: Ask, is_enough: Callable[[], bool]) -> None:
-    """Wait until enough has been said to the request."""
-    changed = asyncio.Event()
-    one.on_change = lambda ask: changed.set()
-    while not is_enough():
-        changed.clear()
-        await changed.wait()

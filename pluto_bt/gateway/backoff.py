@@ -19,3 +19,4 @@ class Backoff:
 
 
 AGAIN = Backoff()
+STEADY_S = 5.0  # a connection that lived so long was a good one: after it the waits begin anew

@@ -8,58 +8,26 @@ from __future__ import annotations
 
 import contextlib
 import math
-import socket
 import ssl
-import threading
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, Protocol, Self
+from typing import TYPE_CHECKING, Any, Self
 from xml.etree import ElementTree
 
 from pluto_bt.gateway.ask import Ask
 from pluto_bt.gateway.backoff import AGAIN, Backoff
 from pluto_bt.gateway.dialogue import Dialogue
 from pluto_bt.gateway.errors import GatewayError, NoAnswerError, NoConnectionError
+from pluto_bt.gateway.keeper import Keeper, Line, dialer, now_s, wait_s
 from pluto_bt.gateway.words import OnProgress, RunResult, command_body, hello_of, no_progress, result_of, tell_progress
 from pluto_bt.gateway.xml_text import Attribute
-from pluto_bt.runtime.clock import NS, calendar_ns, wait, wall_ns
+from pluto_bt.runtime.clock import calendar_ns
 
 if TYPE_CHECKING:
     from pluto_bt.gateway.async_client import AsyncClient as AsyncClient
 
 Element = ElementTree.Element
-READ_BYTES = 64 * 1024
-LEAST_WAIT_S = 0.001  # a socket with a timeout of 0 would not wait for the rest of a TLS record
-
-
-class Line(Protocol):
-    """What the client needs of a connected socket."""
-
-    def settimeout(self, value: float | None, /) -> None:
-        """How long `recv` and `sendall` wait before they raise TimeoutError."""
-
-    def recv(self, size: int, /) -> bytes:
-        """Bytes; empty at the end."""
-
-    def sendall(self, data: bytes, /) -> None:
-        """Send everything."""
-
-    def fileno(self) -> int:
-        """For `select`."""
-
-    def close(self) -> None:
-        """Let go."""
-
-
-def now_s() -> float:
-    """Seconds of a clock that never goes back."""
-    return wall_ns() / NS
-
-
-def wait_s(seconds: float) -> None:
-    """Let time pass."""
-    wait(threading.Event(), seconds)
 
 
 def new_ids(session: str) -> str:
@@ -90,16 +58,12 @@ class Client:
         Raises: GatewayError if there is no gateway, or it turns us away.
         """
         self.timeout_s = timeout_s
-        self._address = (host, port)
-        self._tls, self._backoff = tls, backoff
-        self._connect, self._clock, self._wait = connect or self._dial, clock, wait
-        self._line: Line | None = None
-        self._attempt, self._retry_s = 0, 0.0
         self.dialogue = Dialogue(hello_of(name, session, token), timeout_s, new_ids(session))
-        self._open()
-        if (name or session or token) and not self._pump(lambda: self.dialogue.welcome is not None, self._clock() + timeout_s):
+        self._keeper = Keeper(self.dialogue, f"{host}:{port}", backoff, connect or dialer(host, port, tls), clock, wait)
+        self._keeper.open()
+        if (name or session or token) and not self._keeper.pump(lambda: self.dialogue.welcome is not None, self._keeper.clock() + timeout_s):
             self.close()
-            raise NoAnswerError("no-answer", f"{self._place} did not answer <hello> within {timeout_s:g} s")
+            raise NoAnswerError("no-answer", f"{self._keeper.place} did not answer <hello> within {timeout_s:g} s")
 
     def __enter__(self) -> Self:
         return self
@@ -110,15 +74,15 @@ class Client:
     def close(self) -> None:
         """Let go; a lease ends by it."""
         self.dialogue.end(NoConnectionError("no-connection", "the client was closed"))
-        self._hang_up()
+        self._keeper.hang_up()
 
     def fileno(self) -> int:
         """For `select`; -1 while there is no connection."""
-        return -1 if self._line is None else self._line.fileno()
+        return -1 if self._keeper.line is None else self._keeper.line.fileno()
 
     def now_s(self) -> float:
         """Seconds of the client's clock."""
-        return self._clock()
+        return self._keeper.clock()
 
     @property
     def pending(self) -> deque[Element]:
@@ -128,26 +92,26 @@ class Client:
     @property
     def is_connected(self) -> bool:
         """A connection stands, as far as we know."""
-        return self._line is not None
+        return self._keeper.line is not None
 
     # asking ------------------------------------------------------------------------------------------------------
     def send(self, tag: str, body: str = "", /, **attributes: Attribute) -> str:
-        """Say something whose answer is not waited for; its id."""
-        one = self.dialogue.ask(tag, body, attributes, self._clock())
-        self._flush()
-        return one.id
+        """Say one thing whose answer, an error also, is read by `receive`; its id. Raises: GatewayError if there is no connection."""
+        self._keeper.require_line()
+        id = self.dialogue.say_once(tag, body, attributes)
+        self._keeper.flush()
+        return id
 
     def send_raw(self, data: bytes) -> None:
         """Send bytes as they are; what is said to them comes by `receive`. Raises: GatewayError if there is no connection."""
-        if self._line is None:
-            raise NoConnectionError("no-connection", f"no connection to {self._place}")
+        self._keeper.require_line()
         self.dialogue.say(data)
-        self._flush()
+        self._keeper.flush()
 
     def request(self, tag: str, body: str = "", /, **attributes: Attribute) -> Element:
         """Say something and wait for the answer. Raises: GatewayError if it is an error, or does not come in time."""
-        one = self.dialogue.ask(tag, body, attributes, self._clock())
-        self._pump(lambda: one.is_over, math.inf)
+        one = self.dialogue.ask(tag, body, attributes, self._keeper.clock())
+        self._keeper.pump(lambda: one.is_over, math.inf)
         return one.answer()
 
     def subscribe(self, topic: str, max_rate_hz: float = 0.0, on_change: bool = False) -> str:
@@ -166,7 +130,7 @@ class Client:
     def driving(self, ttl_s: float = 3.0, on_loss: str = "stop", op: str = "acquire") -> Iterator[None]:
         """Hold the lease inside; it is renewed while calls of this client go on, so let none of your own steps take as long as `ttl_s`."""
         self.lease(op, ttl_s=ttl_s, on_loss=on_loss)
-        self.dialogue.keep_lease(ttl_s, self._clock())
+        self.dialogue.keep_lease(ttl_s, self._keeper.clock())
         try:
             yield
         finally:
@@ -183,10 +147,10 @@ class Client:
 
     def run(self, node: str, /, *, deadline_s: float = 0.0, on_progress: OnProgress = no_progress, **ports: Attribute) -> RunResult:
         """Run one node or library tree to its end. Whatever else ends this call (Ctrl-C first of all) stops the robot. Raises: GatewayError."""
-        one = self.dialogue.ask("run", "", {"node": node, "deadline_s": deadline_s, **ports}, self._clock(), is_run=True)
+        one = self.dialogue.ask("run", "", {"node": node, "deadline_s": deadline_s, **ports}, self._keeper.clock(), is_run=True)
         try:
             while not one.is_over:
-                self._pump(lambda: bool(one.is_over or one.told), math.inf)
+                self._keeper.pump(lambda: bool(one.is_over or one.told), math.inf)
                 while one.told:
                     tell_progress(one.told.popleft(), on_progress)
         except GatewayError:
@@ -203,102 +167,12 @@ class Client:
 
         Raises: GatewayError if the conversation is over, or there is no connection when the time is.
         """
-        until_s = self._clock() + (self.timeout_s if timeout_s is None else timeout_s)
-        if self.pending or self._pump(lambda: bool(self.pending), until_s):
+        until_s = self._keeper.clock() + (self.timeout_s if timeout_s is None else timeout_s)
+        if self.pending or self._keeper.pump(lambda: bool(self.pending), until_s):
             return self.pending.popleft()
-        if self._line is None:
-            raise NoConnectionError("no-connection", f"no connection to {self._place}, and no other came in time")
+        if self._keeper.line is None:
+            raise NoConnectionError("no-connection", f"no connection to {self._keeper.place}, and no other came in time")
         return None
-
-    # the line ----------------------------------------------------------------------------------------------------
-    def _pump(self, is_over: Callable[[], bool], until_s: float) -> bool:
-        """Read, write and reconnect until it is over, or the time is; True if it is over. Raises: the final error of the conversation."""
-        dialogue = self.dialogue
-        while not is_over():
-            if dialogue.final is not None:
-                self._hang_up()
-                raise dialogue.final
-            if self._clock() >= until_s:
-                return False
-            if self._line is None:
-                self._try_again(until_s)
-            else:
-                self._flush()
-                self._read(min(until_s, dialogue.due_s) - self._clock())
-            dialogue.tick(self._clock())
-            if dialogue.is_dead:
-                self._lost("the gateway fell silent")
-        return True
-
-    def _flush(self) -> None:
-        out = self.dialogue.to_send()
-        if not out or self._line is None:
-            return
-        try:
-            self._line.settimeout(self.timeout_s)
-            self._line.sendall(out)
-        except OSError as error:
-            self._lost(f"the connection is gone ({error.strerror or error})")
-
-    def _read(self, for_s: float) -> None:
-        if self._line is None:
-            return
-        try:
-            self._line.settimeout(max(for_s, LEAST_WAIT_S))
-            data = self._line.recv(READ_BYTES)
-        except TimeoutError:
-            return
-        except OSError as error:
-            self._lost(f"the connection is gone ({error.strerror or error})")
-            return
-        if data:
-            self.dialogue.feed(data, self._clock())
-        else:
-            self._lost("the gateway closed the connection")
-
-    def _lost(self, why: str) -> None:
-        self._hang_up()
-        self.dialogue.closed(why)
-        self._attempt = 0
-        if self._backoff is None:
-            self.dialogue.end(NoConnectionError("no-connection", why))
-        else:
-            self._retry_s = self._clock() + self._backoff.delay_s(0)
-
-    def _try_again(self, until_s: float) -> None:
-        """One attempt if it is time for it; else wait for that time, but no longer than somebody waits for us."""
-        assert self._backoff is not None
-        left_s = min(self._retry_s, until_s, self.dialogue.due_s) - self._clock()
-        if left_s > 0.0:
-            self._wait(left_s)
-            return
-        try:
-            self._open()
-        except NoConnectionError:
-            self._attempt += 1
-            self._retry_s = self._clock() + self._backoff.delay_s(self._attempt)
-
-    def _open(self) -> None:
-        try:
-            self._line = self._connect(self.timeout_s)
-        except OSError as error:
-            text = f"no gateway at {self._place}: {error.strerror or error}; is a run with --gateway going on?"
-            raise NoConnectionError("no-connection", text) from None
-        self.dialogue.opened(self._clock())
-
-    def _dial(self, timeout_s: float) -> Line:
-        plain = socket.create_connection(self._address, timeout=timeout_s)
-        plain.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        return plain if self._tls is None else self._tls.wrap_socket(plain, server_hostname=self._address[0])
-
-    def _hang_up(self) -> None:
-        line, self._line = self._line, None
-        if line is not None:
-            line.close()
-
-    @property
-    def _place(self) -> str:
-        return f"{self._address[0]}:{self._address[1]}"
 
 
 def __getattr__(name: str) -> Any:

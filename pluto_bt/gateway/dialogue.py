@@ -52,6 +52,7 @@ class Dialogue:
         self._fates: dict[str, Fate] = {}
         self._subscriptions: dict[str, bytes] = {}  # topic or pattern -> the request as it was said
         self._given_up: dict[str, None] = {}
+        self._said_again: set[str] = set()  # ids of subscriptions that are not answered anew
         self._heard_s = 0.0
         self._is_pinging = False
         self._ttl_s = 0.0  # of the lease that is kept; 0 = none
@@ -81,6 +82,12 @@ class Dialogue:
         """Bytes as they are; what comes back is for the inbox."""
         self._out += data
 
+    def say_once(self, tag: str, body: str, attributes: Mapping[str, Attribute]) -> str:
+        """One message, on this connection or never; its id. What comes back is for the inbox."""
+        given = {"id": self._new_id(), **attributes}
+        self.say((element(tag, given, body) + "\n").encode())
+        return str(given["id"])
+
     def keep_lease(self, ttl_s: float, now_s: float) -> None:
         """Renew the lease from now on, `RENEWALS` times in each ttl; 0 = no more."""
         self._ttl_s, self.lease_error = ttl_s, None
@@ -97,6 +104,7 @@ class Dialogue:
         self.is_open, self.is_dead, self._is_pinging = True, False, False
         self._rest, self._out, self._heard_s = b"", bytearray(), now_s
         self._given_up.clear()
+        self._said_again = {ElementTree.fromstring(line.decode()).get("id", "") for line in self._subscriptions.values()}
         again = [one.line for one in self._asks.values()]
         if self._hello:
             self.ask("hello", "", {"version": "1.0", **self._hello}, now_s).on_change = self._greeted
@@ -146,8 +154,9 @@ class Dialogue:
         elif id not in self._asks:
             if id in self._given_up:
                 del self._given_up[id]
-            else:
+            elif id not in self._said_again or message.tag != "ok":
                 self._keep(message)
+            self._said_again.discard(id)
         elif message.tag == "error":
             self._topics.pop(id, None)
             self._end(id).fail(error_in(message))
@@ -162,8 +171,6 @@ class Dialogue:
         one.hear(message)
 
     def _keep(self, message: Element) -> None:
-        if message.tag == "ok" and message.get("id", "").startswith(self._ids):
-            return  # a subscription that was said again
         self.inbox.append(message)
         if len(self.inbox) > KEPT:
             self.inbox.popleft()

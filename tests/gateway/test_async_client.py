@@ -71,7 +71,7 @@ def test_a_cancelled_run_stops_the_robot(running: Running) -> None:
         async with client.driving():
             run = asyncio.create_task(client.run("GoTo", goal="3;4"))
             while not running.robot.runs:
-                await client.request("ping")
+                await client.receive(0.05)
             run.cancel()
             with pytest.raises(asyncio.CancelledError):
                 await run

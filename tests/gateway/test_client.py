@@ -63,6 +63,16 @@ def test_it_tries_again_after_growing_waits_until_somebody_gives_up(bench: Bench
     assert client.is_connected
 
 
+def test_a_gateway_that_turns_it_away_at_once_is_not_stormed(bench: Bench) -> None:
+    client = bench.client()
+    bench.on_step = lambda: bench.lines[-1].close()
+    bench.cut()
+    bench.tried_s.clear()
+    with pytest.raises(NoConnectionError):
+        client.receive(10.0)
+    assert len(bench.tried_s) < 16, bench.tried_s
+
+
 def test_a_stop_is_said_again_until_it_is_heard(bench: Bench) -> None:
     client = bench.client(name="anna")
     bench.is_deaf, bench.on_step = True, lambda: bench.now_s > 1.0 and bench.lines[-1].is_broken is False and bench.is_deaf and heal(bench)
@@ -235,11 +245,24 @@ def test_a_stream_in_pieces_says_what_it_says_whole(sizes: list[int]) -> None:
 
 def test_an_id_that_is_not_answered_is_not_used_again(bench: Bench) -> None:
     client = bench.client()
-    client.send("ping", id="p", t="1")
+    client.dialogue.ask("ping", "", {"id": "p"}, bench.now_s)
     with pytest.raises(BadRequestError, match="another request"):
         client.request("ping", id="p", t="2")
     client.receive(0.1)
     assert client.request("ping", id="p", t="3").get("t") == "3"
+
+
+def test_what_is_only_sent_is_answered_by_receive(bench: Bench) -> None:
+    client = bench.client()
+    id = client.send("lease", op="renew")
+    answer = client.receive(1.0)
+    assert answer is not None and (answer.tag, answer.get("id"), answer.get("code")) == ("error", id, "no-lease")
+    bench.is_down = True
+    bench.cut()
+    with pytest.raises(NoConnectionError):
+        client.receive(0.5)
+    with pytest.raises(NoConnectionError, match="no connection"):
+        client.send("ping")
 
 
 def test_an_answer_that_does_not_come_is_told_and_one_that_comes_late_is_not_heard(bench: Bench) -> None:
