@@ -50,7 +50,7 @@ class Dialogue:
         self._rest = b""
         self._asks: dict[str, Ask] = {}
         self._fates: dict[str, Fate] = {}
-        self._subscriptions: dict[str, bytes] = {}  # topic or pattern -> the request as it was said
+        self._subscriptions: dict[str, Ask] = {}  # by topic or pattern
         self._given_up: dict[str, None] = {}
         self._said_again: set[str] = set()  # ids of subscriptions that are not answered anew
         self._heard_s = 0.0
@@ -104,12 +104,10 @@ class Dialogue:
         self.is_open, self.is_dead, self._is_pinging = True, False, False
         self._rest, self._out, self._heard_s = b"", bytearray(), now_s
         self._given_up.clear()
-        self._said_again = {ElementTree.fromstring(line.decode()).get("id", "") for line in self._subscriptions.values()}
-        again = [one.line for one in self._asks.values()]
+        self._said_again = {one.id for one in self._subscriptions.values()}
+        again = [one.line for one in (*self._subscriptions.values(), *self._asks.values())]
         if self._hello:
             self.ask("hello", "", {"version": "1.0", **self._hello}, now_s).on_change = self._greeted
-        for line in self._subscriptions.values():
-            self._out += line
         for line in again:
             self._out += line
         if self._ttl_s:
@@ -165,7 +163,7 @@ class Dialogue:
 
     def _answered(self, one: Ask, message: Element) -> None:
         if one.id in self._topics:
-            self._subscriptions[self._topics.pop(one.id)] = one.line
+            self._subscriptions[self._topics.pop(one.id)] = one
         if not one.is_run or message.tag == "result":
             self._end(one.id)
         one.hear(message)

@@ -29,6 +29,7 @@ from pluto_bt.gateway.proxies import (
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.runtime.clock import NS
 from pluto_bt.system import MODULES
+from pluto_bt.trees.loader.registry import node_types
 from tests.raw_robot import RawRobot
 
 from .lines import Bench
@@ -81,6 +82,16 @@ def test_the_five_interfaces_are_read_as_in_the_manual(anna: Client) -> None:
         LocProxy(anna, interfaces=32)
     laser = LocProxy(anna, interfaces=2).get_pose(1)
     assert isinstance(laser, LaserPose) and len(laser.pose) == 8
+
+
+@pytest.mark.skipif("SetPose" not in node_types(), reason="this version has no node SetPose")
+def test_the_robot_is_told_where_it_is(anna: Client) -> None:
+    loc = LocProxy(anna, interfaces=8)
+    x_m, y_m, _, theta_rad, *_ = loc.get_pose(3).pose
+    with anna.driving():
+        loc.set_pose(x_m + 0.05, y_m - 0.05, theta_rad + 0.02)
+        assert loc.get_pose(3).pose[:2] == pytest.approx((x_m + 0.05, y_m - 0.05), abs=0.02)
+        loc.set_pose(x_m, y_m, theta_rad)
 
 
 def test_a_lower_link_obeys_only_while_the_one_above_is_stopped(whole: Whole, anna: Client) -> None:
