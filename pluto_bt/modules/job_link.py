@@ -6,7 +6,7 @@ from typing import Final
 
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.blackboard.codes import GotoStatus, MotionStatus, MovetoStatus
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Pair
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, Pair
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_link import RobotLink, spoken_of
 from pluto_bt.skills.jobs import Job
@@ -57,6 +57,10 @@ class JobLink(RobotLink):
         """What motion shows of this job."""
         self.moveto = self.moveto if moveto is None else moveto
         self.motion = self.motion if motion is None else motion
+
+    def show_path(self, points: FloatArray) -> None:
+        """What the mission would show."""
+        self._robot.show_path(points)
 
     def _has_arrived(self) -> bool:
         status = None if self._last is None else self.status(self._last)

@@ -18,6 +18,7 @@ SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
 TURNING_M = 0.06
+GRAZING = 8.0  # a wall that a cone's edge grazes comes nearer by so much more than the end of the cone sweeps: at seven degrees
 FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
 LONGEST_S = 0.7  # older rounds do not belong to the same approach
 
@@ -25,8 +26,10 @@ LONGEST_S = 0.7  # older rounds do not belong to the same approach
 class Approach:
     """The newest rounds of the ring."""
 
-    def __init__(self, ring: SonarRing) -> None:
+    def __init__(self, ring: SonarRing, is_alone: bool) -> None:
+        """`is_alone`: no laser will tell in a moment what was heard, so whoever walks matters; else only who comes."""
         self._ring = ring
+        self._is_alone = is_alone
         self._rounds: list[tuple[Array, Planar, float]] = []
 
     def look(self, ranges_m: Array, robot: Planar, stamp_s: float, came: Mask) -> Array:
@@ -38,7 +41,8 @@ class Approach:
         first_m, _, first_s = self._rounds[0]
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
-        near = (ranges_m < HEAR_M) & (np.abs(first_m - ranges_m) > NEARER_M) & (ranges_m > self._ring.min_range_m)
+        nearer_m, came = (np.abs(first_m - ranges_m), came) if self._is_alone else (first_m - ranges_m, np.zeros_like(came))
+        near = (ranges_m < HEAR_M) & (nearer_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
         return self._those_who_walk(near, came) if near.any() or came.any() else NOTHING
 
     def _those_who_walk(self, near: Mask, came: Mask) -> Array:
@@ -78,11 +82,12 @@ def walked(heard_m: Array, places: Array, axes: Array, near: Mask, half_cone_rad
             step_m = heard_m[r - 1, k] - heard_m[r, k] - nearer_m if comes else heard_m[r, k] - heard_m[r - 1, k] - FARTHER * way_m
             total_m, most_m, moved_m = total_m + step_m, max(most_m, step_m), moved_m + way_m
         sweeps_m = min(last_m, HEAR_M) * swept_rad
+        least_m = NEARER_M + GRAZING * sweeps_m
         if moved_m + sweeps_m < STANDING_M:
             gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
-            found[k] = gap_m > NEARER_M
+            found[k] = gap_m > least_m
         else:
-            is_even = total_m > NEARER_M and most_m < EVENLY * total_m
+            is_even = total_m > least_m and most_m < EVENLY * total_m
             found[k] = is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M
     return found
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
 
 Mask = NDArray[np.bool_]
 Beams = NDArray[np.intp]
 CAME_CLOSER_M = 0.12  # a beam so much shorter than the scan before allows ends on something that moved there
+NEEDLE_BEAMS = 0.7
+GRAZING_M = 1.5  # neighbouring beams that differ by less may graze one wall, which goes on beyond its end by as much till the next beam
 APART_M = 0.3  # neighbouring beams that differ more end on different things
 WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its visible part shifts as we pass
 MOVED_BEAMS = 2  # so many beams must end in former free space
@@ -100,11 +102,14 @@ def came_closer(
 ) -> Mask:
     """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in five beams side by side.
 
+    What is grazed is not seen up to its end, which may lie anywhere before the next beam: so far it is thought to go on. And what lay between
+    two beams of the scan before, as a thin wall in line with the laser, may have stood there unseen.
+
     Args:
         ranges, before: (n,) this scan and the one before, of equal angles; NaN in `before` says nothing.
         laser, last: where they were taken from, in one frame.
     """
-    moved = np.zeros(count, dtype=np.bool_)
+    moved, beam_last = np.zeros(count, dtype=np.bool_), np.zeros(count)
     c_now, s_now, c_last, s_last = np.cos(laser[2]), np.sin(laser[2]), np.cos(last[2]), np.sin(last[2])
     k = -1
     for i in range(ranges.shape[0]):
@@ -115,9 +120,32 @@ def came_closer(
         x, y = ranges[i] * np.cos(angle), ranges[i] * np.sin(angle)
         dx, dy = laser[0] + c_now * x - s_now * y - last[0], laser[1] + s_now * x + c_now * y - last[1]
         x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
-        j = int(np.round((np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad))
+        beam_last[k] = (np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad
+        j = int(np.round(beam_last[k]))
         if j < 2 or j > before.shape[0] - 3:
             continue
         free_m = min(before[j - 2], before[j - 1], before[j], before[j + 1], before[j + 2])
+        free_m = min(free_m, beyond_m(before[j], before[j + 1]), beyond_m(before[j], before[j - 1]))
+        free_m = min(free_m, beyond_m(before[j + 1], before[j + 2]), beyond_m(before[j - 1], before[j - 2]))
         moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
+    leave_out_needles(moved, beam_last)
     return moved
+
+
+@inline_kernel
+def leave_out_needles(moved: Mask, beam_last: Array) -> None:
+    """Take back those side by side that all lay between two beams of the scan before; `beam_last` are their numbers there."""
+    first = 0
+    for k in range(moved.shape[0]):
+        if not moved[k]:
+            first = k + 1
+        elif k == moved.shape[0] - 1 or not moved[k + 1]:
+            beams = beam_last[first : k + 1]
+            if beams.max() - beams.min() < NEEDLE_BEAMS:
+                moved[first : k + 1] = False
+
+
+@inline_kernel
+def beyond_m(end_m: float, next_m: float) -> float:
+    """Where the beam beyond the last one on a grazed wall, `end_m`, would meet it; the one before the last ended at `next_m`."""
+    return 2.0 * end_m - next_m if next_m - end_m < GRAZING_M else end_m

@@ -100,7 +100,7 @@ class WalkerWatch:
             nearest = min(known, key=lambda other: other.gap_m(one), default=None)
             if nearest is not None:
                 self._walkers.remove(nearest)
-                one.times = nearest.times + 1
+                one.times = nearest.times + (one.walked_s > nearest.walked_s)  # that he is still there proves nothing
             self._walkers.append(one)
         del self._walkers[:-MOST_WALKERS]
 

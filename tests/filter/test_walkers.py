@@ -96,6 +96,23 @@ def test_what_stands_is_nobody_however_the_robot_moves(speed_mps: float, turn_ra
     assert not watch.is_anybody_about(now_s)
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.floats(-0.6, 0.6), st.floats(2.0, 4.0), st.floats(0.3, 0.9), st.floats(-0.3, 0.3), st.integers(0, 1000))
+def test_the_end_of_a_wall_seen_at_a_flat_angle_is_nobody(bearing: float, away_m: float, speed_mps: float, turn_radps: float, seed: int) -> None:
+    """The line of the wall passes the robot at some centimetres, so it changes from side to side and comes out from behind its own end."""
+    rng = np.random.default_rng(seed)
+    c, s, leans = math.cos(bearing), math.sin(bearing), bearing + float(rng.uniform(-0.15, 0.15))
+    end = np.array([away_m * c, away_m * s])
+    wall = Shape("flat", "wall", np.array([end, end + 2.5 * np.array([math.cos(leans), math.sin(leans)])]))
+    way = [(0.0, 0.0, 0.0)]
+    for _ in range(9):
+        x, y, theta = way[-1]
+        step_m = speed_mps * SCAN_S
+        way.append((x + step_m * math.cos(theta), y + step_m * math.sin(theta), theta + turn_radps * SCAN_S))
+    watch, now_s = watched([(4.7, 3.7)] * 10, way, wall)
+    assert not watch.is_anybody_about(now_s)
+
+
 def ring_of(name: str) -> SonarRing:
     platform = {"atrv2": ATRV2, "pioneer": PIONEER}[name]
     assert platform.devices.sonar is not None
@@ -167,3 +184,15 @@ def test_a_ring_that_stands_hears_everything_that_moves(walk: list[float]) -> No
 def test_a_wall_that_the_robot_drives_at_is_not_somebody() -> None:
     said = heard("atrv2", [(3.0 + 0.05 * k, 0.0, 0.0) for k in range(20)], [(HALL,)] * 20)
     assert not any(len(found) for found in said)
+
+
+@pytest.mark.parametrize("turn_dps", [4.0, -4.0, 8.0])
+@pytest.mark.parametrize("leans_deg", [10.0, 14.0, 18.0, 22.0])
+def test_a_wall_along_the_edge_of_a_cone_is_not_somebody(turn_dps: float, leans_deg: float) -> None:
+    lean = math.radians(leans_deg)
+    wall = Shape("flat", "wall", np.array([(-0.5, -0.6), (-0.5 - 5.0 * math.cos(lean), -0.6 + 5.0 * math.sin(lean))]))
+    said = heard("atrv2", [(0.0, 0.0, math.radians(turn_dps * ROUND_S * k)) for k in range(60)], [(wall,)] * 60)
+    watch = WalkerWatch(30.0)
+    for k, found in enumerate(said):
+        watch.take_echoes(found, k * ROUND_S)
+    assert not watch.is_anybody_about(7.0)
