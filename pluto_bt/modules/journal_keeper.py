@@ -38,7 +38,7 @@ class JournalKeeper:
                 one.node.step = self._once(one.node, one.path, one.node.step)
         mission.watch(self._ended)
 
-    def after_tick(self, now_s: float, ticks: int, line: str) -> None:
+    def after_tick(self, ticks: int, line: str) -> None:
         """Write what has changed; sure to be on the disk before the next tick if a step has finished.
 
         `line`: the statuses of the tick. Where no leaf has ended and no status is new, nothing is remembered that matters.

@@ -115,7 +115,7 @@ class Local:
             return
         self._box.set_by, self._setter_s = post.setter, now_s
         if post.setter != Setter.NOBODY:
-            self._check.found(now_s)
+            self._check.found()
         self._post_pose.put(post, now_s)
 
     def _adjust(self, post: Pose, now_s: float) -> str:
