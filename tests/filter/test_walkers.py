@@ -196,3 +196,12 @@ def test_a_wall_along_the_edge_of_a_cone_is_not_somebody(turn_dps: float, leans_
     for k, found in enumerate(said):
         watch.take_echoes(found, k * ROUND_S)
     assert not watch.is_anybody_about(7.0)
+
+
+def test_a_post_whose_echo_gets_lost_for_some_rounds_does_not_come() -> None:
+    ring = ring_of("pioneer")
+    approach, watch = Approach(ring), WalkerWatch(30.0)
+    for k in range(40):
+        echo_m = ring.max_range_m if k % 10 in (3, 4, 5, 6) else 1.0
+        watch.take_echoes(approach.look(np.full(ring.count, echo_m), (0.0, 0.0, 0.0), k * ROUND_S, NOT_NEW["pioneer"]), k * ROUND_S)
+    assert not watch.is_anybody_about(4.0)
