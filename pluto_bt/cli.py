@@ -16,7 +16,7 @@ COMMANDS = {
     "ps": "show the modules of a running robot",
     "stop": "stop a running robot at once",
     "module": "start or stop one module of a running robot",
-    "shell": "talk to a running robot: stop, goto X Y, maketurn DEG, pose, tree",
+    "shell": "talk to a running robot: one command, a script, or a conversation",
     "why": "why the robot is not moving: of a running robot or of a black box",
     "replay": "a recorded run, tick by tick, or executed again",
     "info": "what a black box holds",

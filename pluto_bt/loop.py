@@ -109,7 +109,7 @@ class Loop:
         mission, limit_s = system.executive.core.mission, system.options.max_time_s
         if guard.ended is not None or (mission is not None and mission.is_over):
             return True
-        if self.held and limit_s is None and not system.options.has_gateway and isinstance(system.scheduler, Lockstep):
+        if self.held and limit_s is None and not system.options.takes_orders and isinstance(system.scheduler, Lockstep):
             guard.end(HELD, self.held)  # nobody is there who could let it go on
         elif self._interrupt.is_set():
             guard.end("interrupted", "interrupted: Ctrl-C, SIGTERM, or the terminal was closed")

@@ -15,11 +15,11 @@ from pathlib import Path
 
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.modules.resume_parameters import ResumeParameters
+from pluto_bt.runtime.state_folder import state_path
 from pluto_bt.trees import Mission, memory
 from pluto_bt.trees.journal import Past, Pose, read_journal
 
 HELD = "held"
-POLICIES = ("hold", "ask", "resume")
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,7 @@ class Resumption:
 def journal_path(inputs: Inputs) -> Path:
     """Where the journal of these inputs lies if no file is named: one for each mission, with its tree and ports, and world."""
     key = "\n".join([os.path.realpath(inputs.mission_path), str(inputs.tree), repr(sorted(inputs.ports.items())), inputs.world.file, inputs.platform])
-    folder = Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local/state") / "pluto" / "journals"
-    return folder / f"{inputs.mission_path.stem}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.jsonl"
+    return state_path() / "journals" / f"{inputs.mission_path.stem}-{hashlib.sha256(key.encode()).hexdigest()[:12]}.jsonl"
 
 
 def hashes_of(inputs: Inputs, mission: Mission) -> dict[str, str]:

@@ -83,6 +83,7 @@ class Play:
         max_time_s: float | None = 600.0,
         nodes: Iterable[type] = (),
         gateway: str | None = None,
+        web: str | None = None,
         groot: str | None = None,
         record: str | Path | None = None,
     ) -> Run:
@@ -98,8 +99,8 @@ class Play:
         events: list[Event] = []
         leaves = tuple(nodes)
         inputs = read_inputs(request, self._folder, leaves)
-        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway, "groot": groot,
-                               "record": record}  # fmt: skip
+        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway, "web": web,
+                               "groot": groot, "record": record}  # fmt: skip
         runner = make_runner(inputs, nodes=leaves, on_event=events.append, **how)
         runner.run()
         return Run(runner, events)

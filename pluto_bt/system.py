@@ -16,6 +16,7 @@ from pluto_bt.blackboard import TOPICS, Blackboard, Inbox
 from pluto_bt.blackboard.messages import ActuatorState, Event
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.ssh_link import SshRequest
 from pluto_bt.guard import Guard
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
@@ -60,6 +61,7 @@ MODULES: tuple[Module, ...] = (
     Module("executive", "pluto_bt.modules.executive:Executive",   0.1,    "mission",    critical=True, needs=("motion",),               budget_ms=20.0),
     Module("gateway",   "pluto_bt.modules.gateway:Gateway",       0.02,   "gateway",    needs=("executive",), device="gateway",             budget_ms=20.0),
     Module("groot",     "pluto_bt.modules.groot:Groot",           1.0,    "gateway",    needs=("executive",), device="groot",               budget_ms=1.0),
+    Module("ssh",       "pluto_bt.modules.ssh:Ssh",               0.5,    "gateway",    needs=("gateway",), device="ssh",                     budget_ms=1.0),
     Module("recorder",  "pluto_bt.modules.recorder:Recorder",     0.5,    "recorder",   needs=("executive",), device="recorder",            budget_ms=20.0),
 )
 # fmt: on
@@ -93,12 +95,19 @@ class Options:
     gateway: Address | None = None
     gateway_access: Access | None = None
     gateway_audit: Path | None = None
+    web: Address | None = None
     groot: Address | None = None
+    ssh: SshRequest | None = None
     record: RecordRequest | None = None
     own_clock: StepClock | None = None
     load: Callable[..., Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
+
+    @property
+    def takes_orders(self) -> bool:
+        """True if people or programs can command while it runs."""
+        return self.has_gateway or self.web is not None
 
 
 class System:
@@ -119,7 +128,7 @@ class System:
         self.latch = SafetyLatch()
         self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        asked = {"gateway": options.has_gateway, "recorder": options.record is not None, "groot": options.groot is not None, "arm": options.robot.devices.arm is not None}
+        asked = {"gateway": options.takes_orders, "recorder": options.record is not None, "groot": options.groot is not None, "ssh": options.ssh is not None, "arm": options.robot.devices.arm is not None}
         has = {*self.simulator.devices, *(name for name, is_asked in asked.items() if is_asked)}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()

@@ -13,9 +13,9 @@ from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
 from pluto_bt.behaviours.reasons import REASONS, WAITING
 from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.codes import STATUS_ENUMS, code_name
-from pluto_bt.gateway.commands import COMMANDS
 from pluto_bt.gateway.parse import _FROM_CONTENT
 from pluto_bt.gateway.requests import ELEMENTS
+from pluto_bt.gateway.shell.table import GENERAL, MODULE_ROWS
 from pluto_bt.maps import fault_table
 from pluto_bt.modules.robot_file import SHIPPED, RobotFile, load_robot_file
 from pluto_bt.modules.topic_globals import fields_of
@@ -232,7 +232,13 @@ def requests() -> str:
 
 def shell() -> str:
     """What a person may say."""
-    return table(("command", "meaning"), ((f"`{command.usage}`", command.doc) for command in COMMANDS.values()))
+    return table(("command", "meaning"), ((f"`{row.usage}`", row.doc) for row in GENERAL))
+
+
+def subshells() -> str:
+    """What can be said to one module."""
+    rows = sorted(MODULE_ROWS, key=lambda row: row.shell)
+    return table(("sub-shell", "command", "meaning"), ((f"`{row.shell}>`", f"`{row.usage}`", row.doc) for row in rows))
 
 
 def modules() -> str:
@@ -271,6 +277,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "status-codes": status_codes,
     "requests": requests,
     "shell": shell,
+    "subshells": subshells,
     "modules": modules,
     "tutorials": tutorials,
 }

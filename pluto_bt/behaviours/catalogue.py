@@ -22,6 +22,7 @@ from pluto_bt.behaviours.paths import FindPath, FollowRay
 from pluto_bt.behaviours.phase import Phase
 from pluto_bt.behaviours.plan_path import PlanPath
 from pluto_bt.behaviours.say import Say
+from pluto_bt.behaviours.set_pose import SetPose
 from pluto_bt.behaviours.stop import Release, Stop
 from pluto_bt.behaviours.topic_compare import TopicCompare, WaitFor
 from pluto_bt.behaviours.velocity import DriveVelocity, HoldHeading
@@ -31,7 +32,7 @@ from pluto_bt.behaviours.wrist import PointWrist
 ACTIONS: Final[tuple[type[Leaf], ...]] = (
     GoTo, CarGoTo, MakeTurn, MoveTo, PlanPath, FollowPath, NavigateTo, Explore, SetRectangle, Investigate, Resume, DriveVelocity, HoldHeading,
     Stop, Release, WallFollow, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase,
-    TryTurn, ReadAlarms, WaitFor, Say,
+    TryTurn, ReadAlarms, SetPose, WaitFor, Say,
 )  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS, *NAV2_LEAVES)

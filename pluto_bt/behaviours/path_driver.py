@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Final
 
+import numpy as np
 from py_trees.common import Status
 
 from pluto_bt.behaviours.map_path import MapPath
@@ -20,6 +21,7 @@ NEW_POINT_M: Final = 0.4  # a point ahead that has moved less is not worth a new
 POINT_TOLERANCE_M: Final = 0.3
 TURNED_RAD: Final = math.radians(5.0)
 TURN_LIMIT_S: Final = 20.0
+NO_POINTS: Final = np.zeros((0, 2))
 REFRESH_S: Final = 2.0  # drive would time out
 
 
@@ -36,6 +38,14 @@ class PathDriver(MotionLeaf):
         self._following.begin(here, self._last_s)
         self._point: tuple[float, float] | None = None
         self._turning_since_s: float | None = None
+        robot.show_path(path.points)
+
+    def terminate(self, new_status: Status) -> None:
+        """The path is driven no more."""
+        if self.robot is not None and hasattr(self, "_path"):
+            self.robot.show_path(NO_POINTS)
+            del self._path
+        super().terminate(new_status)
 
     def resume(self, robot: Robot) -> None:
         """The next step commands anyway."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from pluto_bt.blackboard.codes import MotionStatus, MovetoStatus
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair, Pose
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, Message, Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.skills import reasons
@@ -91,6 +91,12 @@ class Robot(Protocol):
 
     def show_phase(self, moveto: MovetoStatus | None, motion: MotionStatus | None) -> None:
         """What a job of motion shows in `element[2..3]`; None = as it is."""
+
+    def post_pose(self, x_m: float, y_m: float, theta_rad: float) -> Pose | None:
+        """Tell localisation where the robot stands on the map; what was posted, None if another module keeps the pose."""
+
+    def show_path(self, points: FloatArray) -> None:
+        """The path (n, 2) of the map that is followed from now on, for who looks on; no points = none any more."""
 
     def read_alarms(self) -> None:
         """Take back the alarms of `imu/alarms` that stay until they are read."""

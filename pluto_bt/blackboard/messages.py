@@ -206,6 +206,20 @@ class JobState(Message, frozen=True, gc=False):
     text: str = ""
 
 
+class PathState(Message, frozen=True, gc=False):
+    """A path that is followed, in the map frame: x y x y …; empty = none."""
+
+    points_m: tuple[float, ...] = ()
+
+
+class RectangleState(Message, frozen=True, gc=False):
+    """The rectangle that the jobs of motion never leave: it is 2 * base_m wide and begins at `home` (x m, y m, theta rad); base_m 0 = none."""
+
+    base_m: float = 0.0
+    height_m: float = 0.0
+    home: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
 class LocalMapState(Message, frozen=True, gc=False):
     """The local map of a job, frame of dead reckoning: cell (i, j) of `cells` at i * columns + j begins at (x_m + i * cell_m, y_m + j * cell_m).
 

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pluto_bt.source import Faults, InputError, Place
@@ -13,6 +15,7 @@ from pluto_bt.source.faults import fail
 if TYPE_CHECKING:
     from pluto_bt.gateway.access import Access
     from pluto_bt.gateway.listen import Address
+    from pluto_bt.gateway.ssh_link import SshRequest
 
 Pose = tuple[float, float, float]
 MAX_METRES = 1e6  # as in world files
@@ -82,6 +85,28 @@ def check_gateway(address: str | None, access: Access, faults: Faults) -> None:
         faults.extend(error.faults)
 
 
+def web_address(text: str) -> Address:
+    """`--web HOST:PORT`. Raises: InputError."""
+    from pluto_bt.gateway.listen import WEB_PORT, parse_address
+
+    return parse_address(text, "--web", WEB_PORT)
+
+
+def check_web(text: str | None, faults: Faults, access: Access | None = None) -> None:
+    """The address of the web console, whether it can be had, and whether its library is there."""
+    if text is None:
+        return
+    if find_spec("aiohttp") is None:
+        what, mend = "the library aiohttp is not installed", "pip install 'pluto_bt[web]'"
+        faults.error(Place("--web"), "not-installed", what, expected="aiohttp", mend=mend)
+    from pluto_bt.gateway.listen import open_listener
+
+    try:
+        open_listener(web_address(text), access, "--web").close()
+    except InputError as error:
+        faults.extend(error.faults)
+
+
 def groot_address(text: str) -> Address:
     """`--groot [HOST:]PORT`, on the loopback: 127.0.0.1 without a host, 1667 without a port. Raises: InputError."""
     from pluto_bt.gateway.listen import Address, parse_address
@@ -111,6 +136,33 @@ def check_groot(text: str | None, faults: Faults) -> None:
         groot_address(text)
     except InputError as error:
         faults.extend(error.faults)
+
+
+def read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest | None:
+    """`--ssh HOST:PORT` with `--ssh-keys FILE`: the address, the library and the keys."""
+    if text is None:
+        if keys is not None:
+            faults.error(Place("--ssh-keys"), "bad-usage", "--ssh-keys is for --ssh", mend="add --ssh HOST:PORT")
+        return None
+    from pluto_bt.gateway.listen import parse_address
+    from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest, open_ssh_listener
+
+    missing = [name for name in ("asyncssh", "prompt_toolkit") if find_spec(name) is None]
+    if missing:
+        what, mend = f"{' and '.join(missing)} not installed", "pip install 'pluto_bt[shell]'"
+        faults.error(Place("--ssh"), "not-installed", what, expected=", ".join(missing), mend=mend)
+        return None
+    from pluto_bt.gateway.ssh_keys import check_keys, default_keys
+
+    path = default_keys() if keys is None else Path(keys).expanduser()
+    check_keys(path, faults)
+    try:
+        address = parse_address(text if ":" in text or text.isdigit() else f"{text}:{DEFAULT_PORT}")
+        open_ssh_listener(address).close()
+    except InputError as error:
+        faults.extend(replace(fault, file="--ssh") for fault in error.faults)
+        return None
+    return SshRequest(address, path.absolute())
 
 
 def _number(text: str) -> float | None:

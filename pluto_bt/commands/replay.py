@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,17 +26,27 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--execute", action="store_true", help="run the real tree on the recorded inputs and tell the first tick that differs")
     parser.add_argument("--contracts", action="store_true", help="check the mission's contracts over the run; exit 1 if one is broken")
     parser.add_argument("--mission", metavar="M.xml", help="with --execute, --contracts: take this mission, such as a newer version of it")
+    parser.add_argument("--web", nargs="?", const="", metavar="HOST:PORT", help="show it in the web console, with a slider for the time")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_box, read_time
 
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)
+    if args.web is not None:
+        from pluto_bt.commands.option_values import check_web
+
+        check_web(args.web, faults)
     faults.raise_errors()
     box = read_box(args.file)
+    if args.web is not None:
+        return show_in_browser(box, args.file, args.web)
     if args.execute:
         return execute(box, args.mission)
     if args.contracts:
         return contracts(box, args.mission)
+    if not len(box):
+        print("no tick was recorded", file=sys.stderr)
+        return 1
     if args.step:
         return step(box, at_s or 0.0)
     if at_s is not None:
@@ -51,10 +62,23 @@ def show(box: Box, number: int) -> int:
     """One tick."""
     from pluto_bt.commands.moment import moment
 
-    if number < 0:
-        print("no tick was recorded", file=sys.stderr)
-        return 1
     print(moment(box, number))
+    return 0
+
+
+def show_in_browser(box: Box, name: str, address: str) -> int:
+    """Serve the console on the recording until Ctrl-C."""
+    from pluto_bt.box_moments import Moments
+    from pluto_bt.commands.option_values import web_address
+    from pluto_bt.gateway.listen import Address, open_listener
+    from pluto_bt.gateway.web.recorded import RecordedSite
+
+    moments = Moments(box)
+    site = RecordedSite(moments.scenery(name), moments.at)
+    listener = open_listener(web_address(address), option="--web")
+    print(f"{name} is shown at http://{Address(*listener.getsockname()[:2])}/ (Ctrl-C ends)", flush=True)
+    with suppress(KeyboardInterrupt):
+        site.serve(listener)
     return 0
 
 
@@ -98,8 +122,6 @@ def contracts(box: Box, mission: str | None) -> int:
 
 def step(box: Box, at_s: float) -> int:
     """Go through a run by hand; commands are read from the input, a line each."""
-    if not len(box):
-        return show(box, -1)
     number, is_asked = box.number_at(at_s), sys.stdin.isatty()
     if is_asked:
         print(KEYS)
@@ -113,7 +135,7 @@ def step(box: Box, at_s: float) -> int:
             return 0
         try:
             number = min(max(_moved(words)(box, number), 0), len(box) - 1)
-        except (PlutoError, ValueError):
+        except (PlutoError, ValueError, OverflowError):  # "at inf" is no time either
             print(KEYS, file=sys.stderr)
         print()
 

@@ -5,6 +5,6 @@ from __future__ import annotations
 
 def main(argv: list[str]) -> int:
     """The shell is a client of the gateway and nothing more."""
-    from pluto_bt.gateway.shell import main as shell
+    from pluto_bt.gateway.shell.main import main as shell
 
     return shell(argv)

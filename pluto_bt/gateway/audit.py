@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -13,6 +12,7 @@ import msgspec
 from pluto_bt.gateway.replies import AnyReply, Error
 from pluto_bt.gateway.wire import Ask
 from pluto_bt.runtime.clock import calendar_ns
+from pluto_bt.runtime.state_folder import state_path
 
 LIMIT_BYTES = 16 * 1024 * 1024
 LINE_BYTES = 4096
@@ -21,7 +21,7 @@ WAITING = 16 * 1024
 
 def default_path() -> Path:
     """Where the log lies if no other place is asked for."""
-    return Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local/state") / "pluto" / "audit.jsonl"
+    return state_path() / "audit.jsonl"
 
 
 class Audit:

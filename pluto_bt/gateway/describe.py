@@ -20,7 +20,7 @@ def describe(request: Describe, topics: Sequence[str], catalogue: Sequence[Item]
 
     Args:
         topics: names of the topics of this run.
-        catalogue: the executive's items: nodes, parameters, modules.
+        catalogue: the executive's items: nodes, parameters, modules, goals of the map.
     Raises: RefusedError.
     """
     asked = {kind: getattr(request, kind) for kind in KINDS if getattr(request, kind) is not None}

@@ -12,7 +12,7 @@ from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
 from pluto_bt.gateway.requests import Get, Log, ShowModules, ShowTree, Why
-from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Stamped, Up, Watch, Welcome, pack_value
+from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamped, Up, Watch, Welcome, pack_value
 
 REQUESTS_A_STEP = 64
 QUEUE = 16 * 1024
@@ -36,7 +36,7 @@ class Exchange:
         self._event_seq = 0
         self._batch_s = float("-inf")
 
-    def welcome(self, access: Access, limits: Limits, first_client: int) -> Welcome:
+    def welcome(self, access: Access, limits: Limits, first_client: int, scenery: Scenery | None = None) -> Welcome:
         """The first frame for a gateway; what it is sent begins anew."""
         self._queue.clear()
         self._inbox.clear()
@@ -45,7 +45,8 @@ class Exchange:
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
         port = self._port
-        return Welcome(port.name, port.now_s(), tuple(port.topics()), access, limits, first_client, tuple(port.catalogue()))
+        known = (port.name, port.now_s(), tuple(port.topics()), access, limits, first_client, tuple(port.catalogue()))
+        return Welcome(*known, scenery)
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""

@@ -6,6 +6,7 @@ import os
 import socket
 import subprocess
 import sys
+from typing import NamedTuple
 
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.audit import Audit
@@ -14,7 +15,7 @@ from pluto_bt.gateway.exchange import Exchange
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.listen import Address, open_listener
 from pluto_bt.gateway.port import RobotPort
-from pluto_bt.gateway.wire import Down, Farewell
+from pluto_bt.gateway.wire import Down, Farewell, Scenery
 
 CLIENTS_A_PROCESS = 1 << 32
 BACKLOG_BYTES = 256 * 1024
@@ -23,20 +24,36 @@ STEADY_S = 30.0
 _PROGRAM = "from pluto_bt.gateway.process import main; main()"
 
 
+class Console(NamedTuple):
+    """The web console: where it is served, and what it draws."""
+
+    address: Address
+    scenery: Scenery
+
+
 class GatewayLink:
-    """Listens at `address`, in a process of its own; the listening socket stays ours, so that a restart loses no port and no caller.
+    """Listens at `address`, in a process of its own; the listening sockets stay ours, so that a restart loses no port and no caller.
+    Without an address there is only the web console.
 
     `listen` (or `start`) raises InputError if the address cannot be had. A gateway that dies is restarted by `step`, later each time it dies soon.
     """
 
     def __init__(
-        self, port: RobotPort, address: Address, access: Access | None = None, limits: Limits | None = None, audit: Audit | None = None
+        self,
+        port: RobotPort,
+        address: Address | None,
+        access: Access | None = None,
+        limits: Limits | None = None,
+        audit: Audit | None = None,
+        console: Console | None = None,
     ) -> None:
         self._address = address
+        self._console = console
         self._access = access or Access()
         self._limits = limits or Limits()
         self._exchange = Exchange(port, self._send, audit)
         self._listener: socket.socket | None = None
+        self._web: socket.socket | None = None
         self._courier: Courier | None = None
         self._process: subprocess.Popen[bytes] | None = None
         self._begun_s = 0.0
@@ -47,7 +64,12 @@ class GatewayLink:
     @property
     def address(self) -> Address | None:
         """Where the gateway listens, None if it does not; with port 0 asked for, the port that was free."""
-        return Address(*self._listener.getsockname()[:2]) if self._listener else None
+        return _bound(self._listener)
+
+    @property
+    def console_address(self) -> Address | None:
+        """Where the web console is served, None if it is not."""
+        return _bound(self._web)
 
     @property
     def is_lost(self) -> bool:
@@ -60,9 +82,11 @@ class GatewayLink:
         return self._process.pid if self._process else None
 
     def listen(self) -> None:
-        """Take the port; harmless if it is taken already. Raises: InputError (the caller decides: an asked port is exit 2, the default a warning)."""
-        if self._listener is None:
+        """Take the ports; harmless if they are ours already. Raises: InputError (for an asked port exit 2, for the default one a warning)."""
+        if self._listener is None and self._address is not None:
             self._listener = open_listener(self._address, self._access)
+        if self._web is None and self._console is not None:
+            self._web = open_listener(self._console.address, self._access, "--web")
 
     def start(self, now_s: float) -> None:
         """Listen and spawn the process. Raises: InputError if `listen` was not called before and the port cannot be had."""
@@ -72,7 +96,7 @@ class GatewayLink:
 
     def step(self, now_s: float) -> None:
         """Answer, publish, and look after the process."""
-        if self._listener is None:
+        if not self._is_open:
             return
         if self._courier is not None and self._courier.ended:
             self._bury(now_s)
@@ -83,7 +107,7 @@ class GatewayLink:
 
     def stop(self) -> None:
         """Tell the clients, end the process, free the port."""
-        if self._listener is None:
+        if not self._is_open:
             return
         self._send(Farewell())
         if self._process is not None:
@@ -95,22 +119,28 @@ class GatewayLink:
         if self._courier is not None:
             self._courier.close()
         self._exchange.gateway_lost()
-        self._listener.close()
-        self._listener = self._courier = self._process = None
+        for listener in filter(None, (self._listener, self._web)):
+            listener.close()
+        self._listener = self._web = self._courier = self._process = None
+
+    @property
+    def _is_open(self) -> bool:
+        return self._listener is not None or self._web is not None
 
     def _spawn(self, now_s: float) -> None:
-        assert self._listener is not None
         ours, theirs = socket.socketpair()
         # The program's own path goes along, and -P keeps the current folder out of it: a user's folder must not shadow a package.
         path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
-        fds = (self._listener.fileno(), theirs.fileno())
+        fds = [-1 if one is None else one.fileno() for one in (theirs, self._listener, self._web)]
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", _PROGRAM, *map(str, fds)], pass_fds=fds, stdin=subprocess.DEVNULL, env={**os.environ, "PYTHONPATH": path}
-        )
+            [sys.executable, "-P", "-c", _PROGRAM, *map(str, fds)], pass_fds=[fd for fd in fds if fd >= 0], stdin=subprocess.DEVNULL,
+            env={**os.environ, "PYTHONPATH": path},
+        )  # fmt: skip
         theirs.close()
         self._begun_s = now_s
         self._died_s = None
-        welcome = self._exchange.welcome(self._access, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS)
+        scenery = None if self._console is None else self._console.scenery
+        welcome = self._exchange.welcome(self._access, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS, scenery)
         self._courier = Courier(ours, self._exchange.receive)
         self._courier.send(welcome)
 
@@ -135,3 +165,7 @@ class GatewayLink:
         courier = self._courier
         if courier is not None:
             courier.send(frame)
+
+
+def _bound(listener: socket.socket | None) -> Address | None:
+    return None if listener is None else Address(*listener.getsockname()[:2])

@@ -7,10 +7,12 @@ import socket
 from typing import NamedTuple
 
 from pluto_bt.gateway.access import Access
-from pluto_bt.source.faults import Place, fail
+from pluto_bt.source.faults import InputError, Place, fail
 
 DEFAULT_PORT = 7500
+WEB_PORT = 7580
 BACKLOG = 1024
+WHAT = {"--gateway": "the gateway", "--web": "the web console"}
 
 
 class Address(NamedTuple):
@@ -23,20 +25,21 @@ class Address(NamedTuple):
         return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"
 
 
-def parse_address(text: str) -> Address:
-    """`HOST:PORT`, `HOST` or `:PORT`, an IPv6 host in brackets. Raises: InputError."""
+def parse_address(text: str, option: str = "--gateway", default_port: int = DEFAULT_PORT) -> Address:
+    """`HOST:PORT`, `HOST` or `:PORT`, an IPv6 host in brackets. Raises: InputError, told at `option`."""
     text = f":{text}" if text.isdigit() else text  # a port alone
     host, colon, port = text.rpartition(":") if not text.endswith("]") else (text, "", "")
     if not colon:
-        host, port = text, str(DEFAULT_PORT)
+        host, port = text, str(default_port)
     if not port.isascii() or not port.isdigit() or int(port) > 65535:
-        fail(Place(file="--gateway"), "bad-address", f'bad address "{text}"', expected="HOST:PORT with a port of 0 to 65535", found=text)
+        fail(Place(file=option), "bad-address", f'bad address "{text}"', expected="HOST:PORT with a port of 0 to 65535", found=text)
     return Address(host.strip("[]") or "127.0.0.1", int(port))
 
 
-def open_listener(address: Address, access: Access | None = None) -> socket.socket:
-    """A listening socket. Raises: InputError if the address does not exist or is in use, or is not the loopback and `access` lets anybody in."""
-    place = Place(file="--gateway")
+def open_listener(address: Address, access: Access | None = None, option: str = "--gateway") -> socket.socket:
+    """A listening socket. Raises: InputError, told at `option`, if the address does not exist or is in use, or is not the loopback and
+    `access` lets anybody in."""
+    place, what = Place(file=option), WHAT[option]
     try:
         family, _, _, _, target = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_STREAM)[0]
     except OSError as error:
@@ -45,7 +48,7 @@ def open_listener(address: Address, access: Access | None = None) -> socket.sock
     if not is_safe and not ipaddress.ip_address(str(target[0]).split("%")[0]).is_loopback:
         expected = "a loopback address, or --gateway-tls CERT.pem,KEY.pem and --gateway-tokens FILE.toml"
         mend = f"give both, or listen on 127.0.0.1:{address.port} and come through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
-        fail(place, "not-loopback", f"the gateway does not listen on {address} without TLS and tokens", expected=expected, mend=mend)
+        fail(place, "not-loopback", f"{what} does not listen on {address} without TLS and tokens", expected=expected, mend=mend)
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -53,6 +56,15 @@ def open_listener(address: Address, access: Access | None = None) -> socket.sock
         listener.listen(BACKLOG)
     except OSError as error:
         listener.close()
-        mend = "stop the other program, or give another port: --gateway 127.0.0.1:0 takes any free one"
+        mend = f"stop the other program, or give another port: {option} 127.0.0.1:0 takes any free one"
         fail(place, "address-in-use", f"cannot listen on {address}", found=error.strerror or str(error), mend=mend)
     return listener
+
+
+def is_free(address: Address) -> bool:
+    """True if somebody could listen there now."""
+    try:
+        open_listener(address).close()
+    except InputError:
+        return False
+    return True

@@ -128,4 +128,4 @@ class RobotPort(Protocol):
         """Write a topic that belongs to the gateway. Raises: RefusedError."""
 
     def catalogue(self) -> Sequence[Item]:
-        """What there is besides topics: items of the kinds `node`, `param` and `module`; the same through the whole run."""
+        """What there is besides topics: items of the kinds `node`, `param`, `module` and `goal`; the same through the whole run."""

@@ -8,7 +8,7 @@ import socket
 import ssl
 from collections import deque
 from collections.abc import Iterable, Sized
-from typing import cast
+from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
 from pluto_bt.gateway.session import Session
@@ -47,7 +47,7 @@ class ClientProtocol(asyncio.Protocol):
             self._transport.abort()
             return
         self._session.peer = ":".join(map(str, (self._transport.get_extra_info("peername") or ())[:2]))
-        self._session.known_as(hub.access.by_certificate(_common_name(self._transport)))
+        self._session.known_as(hub.access.by_certificate(common_name(self._transport)))
         self._server.clients[self._session.client] = self
         connection = transport.get_extra_info("socket")
         if connection is not None and transport.get_extra_info("sslcontext") is None:
@@ -170,13 +170,23 @@ class ClientProtocol(asyncio.Protocol):
         self._loop.call_later(2.0 * linger_s if not self._transport.can_write_eof() else linger_s, self._transport.abort)
 
 
+class Served(Protocol):
+    """A client as the server sees it, whatever carries his bytes."""
+
+    def flush(self) -> None:
+        """Something of his may have to be sent."""
+
+    def tick(self, now_s: float) -> None:
+        """Look after his manners."""
+
+
 class Server:
-    """The clients of one listening socket."""
+    """The clients of one gateway process: those of its listening socket, and those whom the web console brings."""
 
     def __init__(self, hub: Hub) -> None:
         self.hub = hub
         self.loop = asyncio.get_running_loop()
-        self.clients: dict[int, ClientProtocol] = {}
+        self.clients: dict[int, Served] = {}
         self._ticks = 0
 
     async def listen(self, listener: socket.socket) -> None:
@@ -184,6 +194,9 @@ class Server:
         context: ssl.SSLContext | None = self.hub.access.context()
         wait_s = None if context is None else HANDSHAKE_S
         await self.loop.create_server(lambda: ClientProtocol(self), sock=listener, backlog=BACKLOG, ssl=context, ssl_handshake_timeout=wait_s)
+
+    def begin(self) -> None:
+        """Look after rates and manners from now on."""
         self._tick()
 
     def flush(self, clients: Iterable[int]) -> None:
@@ -217,7 +230,7 @@ def _keep_buffers_small(transport: asyncio.Transport, mark_bytes: int) -> None:
             connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, mark_bytes)
 
 
-def _common_name(transport: asyncio.Transport) -> str:
+def common_name(transport: asyncio.Transport) -> str:
     """The common name of a verified client certificate, "" without one."""
     subject = (transport.get_extra_info("peercert") or {}).get("subject", ())
     return next((value for names in subject for name, value in names if name == "commonName"), "")

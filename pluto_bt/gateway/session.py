@@ -99,7 +99,7 @@ class Session:
         if isinstance(request, Stop | Estop):
             return True
         is_hello = isinstance(request, requests.SayHello)
-        if self._is_reserve and not self._greeted and not (isinstance(request, requests.SayHello) and request.name in OPERATORS):
+        if self._is_reserve and not self._greeted and not (isinstance(request, requests.SayHello) and request.name.partition(" ")[0] in OPERATORS):
             self.fail("too-many-connections", f"the last places are for operators: <stop/>, or hello with a name of {', '.join(sorted(OPERATORS))}")
             return False
         if not self._is_known and not is_hello:

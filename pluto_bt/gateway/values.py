@@ -79,6 +79,8 @@ def _statuses(codes: tuple[int, ...]) -> str:
 
 
 def _type_name(hint: Any) -> str:
+    if hint is bytes:
+        return "base64"
     if hint in (int, float, bool, str):
         return str(hint.__name__)
     text = str(hint)

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from pluto_bt.gateway.client import Client
+from pluto_bt.gateway.client import Client, Element
 from pluto_bt.gateway.xml_text import Attribute
 
 
 def ask(client: Client, at_s: float | None = None) -> tuple[bool, list[dict[str, Any]]]:
     """(does it move, the causes). Raises: GatewayError."""
     at: dict[str, Attribute] = {} if at_s is None else {"at": at_s}
-    reply = client.request("why", **at)
+    return causes_of(client.request("why", **at))
+
+
+def causes_of(reply: Element) -> tuple[bool, list[dict[str, Any]]]:
+    """(does it move, the causes) as a `<why>` tells them."""
     causes = [
         {"layer": cause.get("layer", ""), "code": cause.get("code", ""), "text": cause.get("text", ""), "since_s": float(cause.get("since", "0")),
          "age_s": float(cause.get("age", "0")), "unblock": cause.get("unblock", "")}
@@ -33,7 +37,3 @@ def lines(is_moving: bool, causes: Sequence[dict[str, Any]]) -> list[str]:
             told.append(f"          what would help: {cause['unblock']}")
     return told
 
-
-def why_lines(client: Client) -> list[str]:
-    """The answer for a person. Raises: GatewayError."""
-    return lines(*ask(client))

@@ -15,7 +15,7 @@ from pluto_bt.gateway.replies import AnyReply, Item
 from pluto_bt.gateway.requests import AnyRequest
 
 TYPES: dict[str, type[Message]] = {topic.name: topic.type for topic in TOPICS}
-FRAME_LIMIT = 16 * 1024 * 1024
+FRAME_LIMIT = 64 * 1024 * 1024
 _HEAD_BYTES = 4
 
 
@@ -50,8 +50,15 @@ class Watch(Frame, frozen=True):
     topics: tuple[str, ...]
 
 
+class Scenery(msgspec.Struct, frozen=True):
+    """What the web console draws and what does not change: JSON of the map and the robot, and the pictures (PNG) that it names."""
+
+    json: bytes
+    pictures: dict[str, bytes] = {}
+
+
 class Welcome(Frame, frozen=True):
-    """Down, first: what the gateway must know."""
+    """Down, first: what the gateway must know; `scenery` only where there is a web console."""
 
     robot: str
     now_s: float
@@ -60,6 +67,7 @@ class Welcome(Frame, frozen=True):
     limits: Limits
     first_client: int
     catalogue: tuple[Item, ...] = ()
+    scenery: Scenery | None = None
 
 
 class Stamped(msgspec.Struct, frozen=True, gc=False):

@@ -1,28 +1,41 @@
-"""What there is besides topics, as the gateway describes it: every node with its ports, every parameter, every module."""
+"""What there is besides topics, as the gateway describes it: every node with its ports, every parameter, every module, the goals of the map."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from pluto_bt.behaviours.destinations import HOME
 from pluto_bt.gateway.replies import Item
 from pluto_bt.modules.live_parameters import NAMES
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.runtime.parameters import Parameter, describe, unit_of
 
 if TYPE_CHECKING:
+    from pluto_bt.maps.world import World
     from pluto_bt.runtime.supervision import Part
     from pluto_bt.runtime.table import Module
     from pluto_bt.trees.loader.registry import NodeType
     from pluto_bt.trees.ports import PortModel
 
 
-def catalogue(parts: Sequence[Part]) -> tuple[Item, ...]:
+def catalogue(parts: Sequence[Part], places: World | None = None) -> tuple[Item, ...]:
     """All items, by kind, each kind in the order of its table."""
     from pluto_bt.trees.loader.registry import node_types
 
     nodes = [_node(node) for _, node in sorted(node_types().items())]
-    return (*nodes, *map(_param, describe(RobotFile)), *(_module(part.module) for part in parts))
+    return (*nodes, *map(_param, describe(RobotFile)), *(_module(part.module) for part in parts), *_goals(places))
+
+
+def _goals(places: World | None) -> Iterator[Item]:
+    """The places that missions may name, and where the robot lives."""
+    if places is None:
+        return
+    for goal in (*places.goals, *(() if places.home is None else (replace(places.home, id=HOME),))):
+        heading = "" if goal.theta_rad is None else f", theta {math.degrees(goal.theta_rad):g}°"
+        yield Item({"kind": "goal", "name": goal.id}, (), f"x {goal.x_m:g} m, y {goal.y_m:g} m{heading}")
 
 
 def _node(node: NodeType) -> Item:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
 
@@ -21,6 +22,8 @@ from pluto_bt.trees.executive import Activity
 from pluto_bt.trees.executive import Executive as Core
 
 SHOW_MODULES_EVERY = 10
+WORDS_EVERY_S = 0.5  # so often the words of the nodes are shown, if somebody may look on and there are not too many
+MOST_WORDY_NODES = 500
 
 
 class Executive:
@@ -42,6 +45,7 @@ class Executive:
         self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
         self._shown_statuses = ""
+        self._next_words_s = math.inf
         self._steps = 0
         self._own_clock = context.own_clock
         self.keeper: JournalKeeper | None = None
@@ -102,7 +106,7 @@ class Executive:
             return
         is_its = activity.mission is keeper.mission
         if is_its and activity in ticked:
-            keeper.after_tick(now_s, activity.ticks, lines[ticked.index(activity)])
+            keeper.after_tick(activity.ticks, lines[ticked.index(activity)])
         if not is_its or activity.is_over:
             keeper.end()
             self.keeper = None
@@ -120,13 +124,15 @@ class Executive:
             self._log.step(now_s, [], [], is_end=True)
 
     def _show_trees(self, ticked: list[Activity], lines: list[str], now_s: float) -> None:
-        """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed."""
+        """A trace line for each tree; the nodes of all of them, the mission's first, when a status has changed or somebody may read the words."""
         for activity, statuses in zip(ticked, lines, strict=True):
             self._record(activity, statuses)
         shown = " ".join(lines)
-        if shown != self._shown_statuses:
+        if shown != self._shown_statuses or now_s >= self._next_words_s:
             self._shown_statuses = shown
             nodes = [node for activity in ticked for node in activity.mission.node_states()]
+            is_watched = self._system.options.takes_orders and len(nodes) <= MOST_WORDY_NODES
+            self._next_words_s = now_s + WORDS_EVERY_S if is_watched else math.inf
             self._tree.put(TreeState(now_s, ticked[0].ticks, tuple(nodes)), now_s)
 
     def _record(self, ticked: Activity, statuses: str) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from pluto_bt.gateway.audit import Audit
-from pluto_bt.gateway.link import GatewayLink
+from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.port import RobotPort
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.gateway_port import GatewayPort
+from pluto_bt.modules.scenery import scenery
 from pluto_bt.source import InputError
 
 
@@ -14,19 +16,29 @@ class Gateway:
     """Listens from the moment it is made, so that a port in use is told before anything moves."""
 
     def __init__(self, context: Context) -> None:
-        """Raises: InputError if the address that was asked for cannot be had; the default one in use is only a warning."""
+        """Raises: InputError if an address that was asked for cannot be had; the default one in use is only a warning."""
         options = context.system.options
-        self._say = context.say
+        self._say, self._options = context.say, options
         self._restarts, self._is_lost, self._trouble = 0, False, ""
+        port = GatewayPort(context)
+        self._console: Console | None = None
+        if options.web is not None:
+            self._console = Console(options.web, scenery(context.map or options.world, options.robot, port.name, mode="live"))
+        self._link = self._open(port, options.gateway or (Address() if options.has_gateway else None))
+
+    def _open(self, port: RobotPort, address: Address | None) -> GatewayLink | None:
+        """The link with its ports taken; None if there is nothing to listen on."""
+        options = self._options
         audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
-        link = GatewayLink(GatewayPort(context), options.gateway or Address(), options.gateway_access, options.robot.gateway, audit)
-        self._link: GatewayLink | None = link
+        link = GatewayLink(port, address, options.gateway_access, options.robot.gateway, audit, self._console)
         try:
             link.listen()
         except InputError as error:
-            if options.gateway is not None:
+            if options.gateway is not None or address is None or link.address is not None:
                 raise
-            self._link, self._trouble = None, error.faults[0].message
+            self._trouble = error.faults[0].message
+            return None if self._console is None else self._open(port, None)
+        return link
 
     @property
     def address(self) -> Address | None:
@@ -34,17 +46,28 @@ class Gateway:
         return None if self._link is None else self._link.address
 
     @property
+    def console_address(self) -> Address | None:
+        """Where the web console is served, None if it is not."""
+        return None if self._link is None else self._link.console_address
+
+    @property
     def pid(self) -> int | None:
         """The gateway's process, None while there is none."""
         return None if self._link is None else self._link.pid
 
     def start(self, now_s: float) -> None:
-        """Spawn the process and tell the address."""
-        if self._link is None:
+        """Spawn the process and tell the addresses."""
+        if self._trouble:
             self._say("warning", "no-gateway", "gateway", f"this run has no gateway: {self._trouble}; give another port with --gateway HOST:PORT")
+        if self._link is None:
             return
         self._link.start(now_s)
-        self._say("info", "gateway", "gateway", f"listening on {self._link.address}")
+        if self.address is not None:
+            self._say("info", "gateway", "gateway", f"listening on {self.address}")
+        if self.console_address is not None:
+            access = self._options.gateway_access
+            scheme = "https" if access is not None and access.certificate else "http"
+            self._say("info", "web-console", "gateway", f"the web console is at {scheme}://{self.console_address}/")
 
     def step(self, now_s: float) -> None:
         """Answer, publish, look after the process."""

@@ -19,7 +19,7 @@ from pluto_bt.modules.tuning import Tuning
 from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.source import did_you_mean
-from pluto_bt.trees.executive import ABORTED, PAUSED, RUNNING, Activity
+from pluto_bt.trees.executive import ABORTED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire
@@ -123,8 +123,9 @@ class GatewayPort:
             return RunState("timeout", "timeout", "the deadline is over")
         if activity.state == ABORTED:
             return RunState(activity.reason if activity.reason in ENDS else "cancelled", activity.reason)
-        outputs = tuple(activity.mission.outputs().items()) if activity.is_over else ()
-        return RunState(RUNNING if activity.state == PAUSED else activity.state, activity.reason, activity.text, outputs)
+        if not activity.is_over:
+            return RunState(RUNNING, "", str(activity.mission.root.feedback_message))
+        return RunState(activity.state, activity.reason, activity.text, tuple(activity.mission.outputs().items()))
 
     def cancel(self, run: str, reason: str) -> None:
         """End an errand with zero velocity."""
@@ -196,8 +197,8 @@ class GatewayPort:
         self._publishers[topic].put(value, self.now_s())
 
     def catalogue(self) -> Sequence[Item]:
-        """Nodes, parameters and modules."""
-        return catalogue(self._system.parts)
+        """Nodes, parameters, modules and goals."""
+        return catalogue(self._system.parts, self._system.context.map)
 
     def _tell_change(self, changed: Mapping[str, str], source: str) -> None:
         if changed:

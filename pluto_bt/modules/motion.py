@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from pluto_bt.blackboard.codes import Avoidance, GotoStatus, LinkStatus, MotionStatus
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, JobState, Pose
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, JobState, Pose, RectangleState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import RELEASE, Link, below, newest
 from pluto_bt.skills import reasons
@@ -13,6 +13,7 @@ from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.motion import Motion as Skill
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.rectangle import Rectangle
 
 if TYPE_CHECKING:
     from pluto_bt.modules.robot_file import RobotFile
@@ -34,6 +35,8 @@ class Motion:
         self._pose, self._job_state = newest(context, "Localization/Pose"), newest(context, "motion/job")
         self._avoid_status, self._avoid_command = below(context, "avoidance")
         self._sent: ActuatorState | None = None
+        self._rectangle = context.board.publisher("motion/rectangle", "motion")
+        self._shown: Rectangle | None = None
 
     def start(self, now_s: float) -> None:
         """Begin without a command."""
@@ -64,6 +67,7 @@ class Motion:
                 self._link.tell(now_s, self._rest(now_s), letter.command)
                 return
             self._pass_down(self._skill.accept(letter.command, now_s, self._where(now_s)))
+            self._show(now_s)
             self._order()
         self._work_for_the_job(now_s)
         status: FVectorState | None = self._avoid_status()
@@ -86,6 +90,14 @@ class Motion:
         if command is not None:
             self._avoid.post("motion", command)
             self._sent = command
+
+    def _show(self, now_s: float) -> None:
+        """The rectangle, if it is another one."""
+        rectangle = self._skill.rectangle
+        if rectangle is not self._shown:
+            self._shown = rectangle
+            sides = () if rectangle is None else (rectangle.base_m, rectangle.height_m, rectangle.home)
+            self._rectangle.put(RectangleState(now_s, *sides), now_s)
 
     def _order(self) -> None:
         is_ordered, job = self._skill.order()

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.behaviours.surroundings import Surroundings
-from pluto_bt.blackboard import Snapshot
-from pluto_bt.blackboard.codes import CommandType, MotionCommand, MotionStatus, MovetoStatus
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Message, Pair
+from pluto_bt.blackboard import Publisher, Snapshot
+from pluto_bt.blackboard.codes import CommandType, MotionCommand, MotionStatus, MovetoStatus, Setter
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, Message, Pair, PathState, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 SOURCE = "mission"
 GOALS_KEPT = 200
 AMENDED_WITHIN_S = 1.0  # a goal so soon after the last one is the same order with other figures: a target that is followed
+BY_HAND = (0.1**2, 0.0, 0.0, 0.0, 0.1**2, 0.0, 0.0, 0.0, 0.05**2)  # how sure a person is of a pose: 0.1 m, 3°
 MOTION_COMMAND, MOTION_STATUS = "motion/command", "motion/status"
 
 
@@ -41,6 +42,7 @@ class RobotLink:
         self._surroundings: Surroundings | None = None
         self._navigation: Navigation | None = None
         self._views: ScanViews | None = None
+        self._path: Publisher | None = None
         self._goal_s = -AMENDED_WITHIN_S
 
     @property
@@ -100,12 +102,15 @@ class RobotLink:
         *,
         on_the_way: bool = False,
     ) -> Ticket:
-        """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
+        """Send a command; `acceleration[0]` carries the tolerance of a goto."""
         forces = force if isinstance(force, tuple) else (force,)
-        command = ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
-        is_goto = 0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO
-        if flags == MotionCommand.MOVETO or (is_goto and not on_the_way):
-            self._note_goal(position, command.stamp_s)
+        return self._send(ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces), on_the_way)
+
+    def _send(self, command: ActuatorState, on_the_way: bool) -> Ticket:
+        """Post it to motion as `mission`; a goal is noted for pictures."""
+        is_goto = 0 < command.flags < MotionCommand.MOVETO and command.flags % 10 == CommandType.GOTO
+        if command.flags == MotionCommand.MOVETO or (is_goto and not on_the_way):
+            self._note_goal(command.position, command.stamp_s)
         return self._post("motion", SOURCE, command)
 
     def _post(self, to: str, source: str, command: ActuatorState) -> Ticket:
@@ -151,6 +156,19 @@ class RobotLink:
     def move_arm(self, share: float) -> None:
         """Post a command to the arm."""
         self._post("arm", SOURCE, ActuatorState(self.now_s(), 0, (share, 0.0)))
+
+    def post_pose(self, x_m: float, y_m: float, theta_rad: float) -> Pose | None:
+        """Leave it in the post box of localisation, at the stamp of its newest pose."""
+        newest = self.newest("Localization/Pose")
+        stamp_s = newest.stamp_s if newest is not None else self.now_s()
+        pose = Pose(stamp_s, (x_m, y_m, 0.0, theta_rad, 0.0, 0.0), BY_HAND, Setter.JUST_SET)
+        return None if self._context.posts.post(SOURCE, pose) else pose
+
+    def show_path(self, points: FloatArray) -> None:
+        """The path that is followed, as the topic `map/path`."""
+        self._path = self._path or self._context.board.publisher("map/path", "executive")
+        now_s = self.now_s()
+        self._path.put(PathState(now_s, tuple(points.ravel().tolist())), now_s)
 
     def read_alarms(self) -> None:
         """Leave a letter for the module `alarms`."""

@@ -27,8 +27,10 @@ LONGEST_S = 0.7  # older rounds do not belong to the same approach
 class Approach:
     """The newest rounds of the ring."""
 
-    def __init__(self, ring: SonarRing) -> None:
+    def __init__(self, ring: SonarRing, is_alone: bool) -> None:
+        """`is_alone`: no laser will tell in a moment what was heard, so whoever walks matters; else only who comes."""
         self._ring = ring
+        self._is_alone = is_alone
         self._rounds: list[tuple[Array, Planar, float]] = []
         self._lost = np.zeros(ring.count, dtype=np.intp)  # rounds in a row without an echo
 
@@ -42,7 +44,8 @@ class Approach:
         first_m, _, first_s = self._rounds[0]
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
-        near = (ranges_m < HEAR_M) & (np.abs(first_m - ranges_m) > NEARER_M) & (ranges_m > self._ring.min_range_m)
+        nearer_m, came = (np.abs(first_m - ranges_m), came) if self._is_alone else (first_m - ranges_m, np.zeros_like(came))
+        near = (ranges_m < HEAR_M) & (nearer_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
         return self._those_who_walk(near, came) if near.any() or came.any() else NOTHING
 
     def _without_losses(self, ranges_m: Array) -> Array:

@@ -116,7 +116,7 @@ class _Ear:
         self._is_alone = is_alone
         self._sonar, self._stale_s = sonar, parameters.sonar_stale_s
         self._ring = ring = SonarRing(sonar, outline)
-        self._approach = Approach(ring)
+        self._approach = Approach(ring, is_alone)
         self._leaves_m = np.array([outline.way_out_m(x, y, math.cos(theta), math.sin(theta)) for x, y, theta in ring.axes.tolist()])
         self._heard: SonarState | None = None
 

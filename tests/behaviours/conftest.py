@@ -11,7 +11,7 @@ import pytest
 from pluto_bt.behaviours.navigation import Navigation
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.behaviours.surroundings import Surroundings
-from pluto_bt.blackboard.messages import ActuatorState, FVectorState, ImuState, MarkerState, Message, Pair, Pose, SpeedState
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, ImuState, MarkerState, Message, Pair, Pose, SpeedState
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.maps.platform import Body, Bumpers, Devices, Inertial, Laser, Limits, MarkerCamera, Platform, Sonar, Transducer, WheelSpeed, Wrist
 from pluto_bt.maps.world import World
@@ -49,6 +49,9 @@ class FakeRobot:
         self.accept = True
         self.refuse = ""
         self.alarms_read = 0
+        self.keeps_pose = False
+        self.posed: Pose | None = None
+        self.paths: list[FloatArray] = []
         self.resumes = 0
         self.views: list[ScanView] = []
         self._surroundings: Surroundings | None = None
@@ -98,6 +101,13 @@ class FakeRobot:
 
     def point_wrist(self, *target: float) -> None:
         self.pointed.append(target)
+
+    def post_pose(self, x_m: float, y_m: float, theta_rad: float) -> Pose | None:
+        self.posed = None if self.keeps_pose else Pose(1.0, (x_m, y_m, 0.0, theta_rad, 0.0, 0.0), setter=-1)
+        return self.posed
+
+    def show_path(self, points: FloatArray) -> None:
+        self.paths.append(points)
 
     def read_alarms(self) -> None:
         self.alarms_read += 1

@@ -45,6 +45,22 @@ def test_say(stage: Any) -> None:
     assert stage.robot.said == ["mind the step"]
 
 
+def test_set_pose_waits_until_it_is_believed(stage: Any) -> None:
+    mission = stage.load('<SetPose pose="1;2;90" reason="{why}"/>')
+    assert stage.tick(mission) == "RUNNING"
+    assert stage.robot.posed.pose == pytest.approx((1.0, 2.0, 0.0, math.pi / 2, 0.0, 0.0)) and stage.robot.posed.setter == -1
+    stage.robot.values["Localization/Post_Pose"] = stage.robot.posed
+    assert stage.tick(mission) == "SUCCESS" and stage.robot.commands == []
+
+
+def test_set_pose_is_refused_while_a_module_keeps_the_pose_and_gives_up(stage: Any) -> None:
+    stage.robot.keeps_pose = True
+    mission = stage.load('<SetPose pose="1;2;90" reason="{why}"/>')
+    assert stage.tick(mission) == "FAILURE" and mission.blackboard["why"] == "bad-command"
+    stage.robot.keeps_pose = False
+    assert "FAILURE" in {stage.tick(mission) for _ in range(15)} and mission.blackboard["why"] == "timeout"
+
+
 @pytest.mark.parametrize(("x", "status"), [(1.29, "SUCCESS"), (1.31, "FAILURE")])
 def test_is_at(stage: Any, x: float, status: str) -> None:
     stage.robot.is_at(x, 2.0)

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.client import Client
 from pluto_bt.gateway.limits import Limits
-from pluto_bt.gateway.link import GatewayLink
+from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.runtime.clock import MonotonicClock
 
@@ -19,9 +20,9 @@ from .robot import FakeRobot
 class Running:
     """A link that a thread steps, as the scheduler would."""
 
-    def __init__(self) -> None:
+    def __init__(self, console: Console | None = None, access: Access | None = None) -> None:
         self.robot = FakeRobot()
-        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), limits=Limits(linger_s=0.3))
+        self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), access, Limits(linger_s=0.3), console=console)
         self.clock = MonotonicClock()
         self.link.start(0.0)
         self.on_step = lambda: None
@@ -34,12 +35,34 @@ class Running:
         assert address is not None
         return address
 
+    @property
+    def url(self) -> str:
+        """Where the web console is."""
+        assert self.link.console_address is not None
+        return f"http{'s' if self.link._access.certificate else ''}://{self.link.console_address}"
+
+    def wait_until_nobody_is_there(self) -> None:
+        """Until the executive knows that every client is gone, and what that entails is done."""
+        exchange = self.link._exchange
+        while exchange._watched or exchange._desk._leases.held is not None:
+            pass
+
     def pump(self) -> None:
         """Begin to step."""
         self._thread.start()
 
     def client(self, **given: str) -> Client:
         return Client(*self.address, timeout_s=20.0, **given)
+
+    def renew(self) -> FakeRobot:
+        """The robot as new, for the next test of a file that shares this gateway; its runs stay known, for one may still be watched, and its
+        events, for their numbers must go on.
+        """
+        fresh = FakeRobot()
+        fresh.time_s, fresh.runs, fresh.events = self.robot.time_s, self.robot.runs, self.robot.events
+        self.on_step = lambda: None
+        self.robot.__dict__ = fresh.__dict__  # at once: the other thread must never see half of it
+        return self.robot
 
     def end(self) -> None:
         self._over.set()

@@ -33,8 +33,8 @@ class FakeRobot:
         old = self.values.get(topic)
         self.values[topic] = Newest(value, old.seq + 1 if old else 1, self.time_s)
 
-    def says(self, text: str, level: str = "info") -> None:
-        self.events.append((len(self.events) + 1, m.Event(self.time_s, level, "say", "test", text)))
+    def says(self, text: str, level: str = "info", code: str = "say") -> None:
+        self.events.append((len(self.events) + 1, m.Event(self.time_s, level, code, "test", text)))
 
     # RobotPort ---------------------------------------------------------------------------------------------------
     def now_s(self) -> float:

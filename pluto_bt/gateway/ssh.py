@@ -1,0 +1,111 @@
+"""The ssh door (`--ssh`), a process of its own beside the gateway: keys only, the shell and nothing else.
+
+Whoever comes in talks to the robot as any client of the gateway does. When a client is gone, however it went, its connection to the gateway
+ends: the lease with it, and what it drove stops.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import os
+import signal
+import socket
+import sys
+from contextlib import suppress
+from dataclasses import dataclass
+
+import asyncssh
+
+from pluto_bt.gateway.listen import Address, parse_address
+from pluto_bt.gateway.ssh_visit import Visit
+
+LOGIN_S = 15
+KEEPALIVE_S, KEEPALIVES = 3, 3
+LOGINS = 48
+VISITS = 64
+NICENESS = 10  # the arithmetic of logins must not hold up the control loop; a key that is hit is heard soon all the same
+
+
+@dataclass
+class House:
+    """What all connections share, and how many there are."""
+
+    gateway: Address
+    keys: str
+    logins: int = 0
+    visits: int = 0
+
+
+class Door(asyncssh.SSHServer):
+    """One client at the door. Passwords, forwarding, sftp and scp are refused by asyncssh as long as nothing here offers them."""
+
+    def __init__(self, house: House) -> None:
+        self._house = house
+        self._connection: asyncssh.SSHServerConnection
+        self._is_in = False
+
+    def connection_made(self, conn: asyncssh.SSHServerConnection) -> None:
+        """Somebody knocks."""
+        self._connection = conn
+        self._house.logins += 1
+        if self._house.logins > LOGINS:
+            conn.abort()
+
+    def begin_auth(self, username: str) -> bool:
+        """The keys are read anew, so that one that was taken out opens no more; the user's name is only a name."""
+        with suppress(OSError, ValueError):
+            self._connection.set_authorized_keys(self._house.keys)
+        return True
+
+    def public_key_auth_supported(self) -> bool:
+        """The only way in."""
+        return True
+
+    def auth_completed(self) -> None:
+        """In."""
+        self._is_in = True
+        self._house.logins -= 1
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Gone; the visits of this connection are told by themselves."""
+        if not self._is_in:
+            self._house.logins -= 1
+
+    def session_requested(self) -> Visit | bool:
+        """A visit, if there is room for one more."""
+        if self._house.visits >= VISITS:
+            return False
+        self._house.visits += 1
+        return Visit(self._house.gateway, self._leave)
+
+    def _leave(self) -> None:
+        self._house.visits -= 1
+
+
+async def serve(listener: socket.socket, leash: socket.socket, house: House, host_key: str) -> None:
+    """Serve until the other end of the leash is gone."""
+    over = asyncio.Event()
+    asyncio.get_running_loop().add_reader(leash, over.set)
+    door = await asyncssh.listen(
+        sock=listener, server_factory=lambda: Door(house), server_host_keys=[host_key], config=None, server_version="pluto",
+        public_key_auth=True, password_auth=False, kbdint_auth=False, host_based_auth=False, gss_host=None, agent_forwarding=False,
+        x11_forwarding=False, allow_scp=False, sftp_factory=None, compression_algs=["none"], login_timeout=LOGIN_S, line_editor=False,
+        keepalive_interval=KEEPALIVE_S, keepalive_count_max=KEEPALIVES, encoding="utf-8", errors="replace",
+    )  # fmt: skip
+    await over.wait()
+    door.close()
+
+
+def main() -> None:
+    """`ssh LISTENER_FD LEASH_FD GATEWAY KEYS HOST_KEY`."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the run's terminal is the executive's
+    os.nice(NICENESS)
+    logging.getLogger("asyncssh").setLevel(logging.CRITICAL)  # who cannot get in is told so himself
+    listener, leash = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])
+    gateway, keys, host_key = sys.argv[3:6]
+    asyncio.run(serve(listener, leash, House(parse_address(gateway), keys), host_key))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,46 @@
+// Why the robot is, or is not, moving: the verdict, the first cause and what would help, then the way up to the mission.
+
+import { age, byId, make, say } from "./dom.js";
+
+const EVERY_MS = 500;
+
+export class Why {
+  /** Without a link (a recording) it only shows what it is given. */
+  constructor(link) {
+    this.link = link;
+    this.seen = "";
+    if (!link) return;
+    setInterval(() => link.isUp && !document.hidden && this.look(), EVERY_MS);
+    link.on("up", () => this.look());
+    link.on("down", () => this.unknown());
+  }
+
+  look() {
+    this.link.ask("why").then((answer) => this.show(answer.moving === "true", answer.rows, this.now_s ?? 0)).catch(() => {});
+  }
+
+  unknown() {
+    byId("verdict").dataset.state = "unknown";
+    say(byId("verdict"), "Unknown");
+    byId("causes").replaceChildren(make("li", {}, "Without a link nobody here knows what the robot does."));
+    this.seen = "";
+  }
+
+  show(isMoving, causes, now_s) {
+    byId("verdict").dataset.state = isMoving ? "moving" : "standing";
+    say(byId("verdict"), isMoving ? "Moving" : "Standing");
+    const seen = JSON.stringify(causes.map(({ layer, code, text, unblock }) => [layer, code, text, unblock]));
+    const list = byId("causes");
+    if (seen !== this.seen) {
+      this.seen = seen;
+      list.replaceChildren(...(causes.length ? causes.map(cause) : [make("li", {}, isMoving ? "Nothing hinders it." : "Nothing hinders it, and nobody tells it to move.")]));
+    }
+    if (causes.length) causes.forEach((one, i) => say(list.children[i].querySelector(".since"), `for ${age(Math.max(0, now_s - Number(one.since)))}`));
+  }
+}
+
+function cause({ layer, code, text, unblock }, i) {
+  const parts = [make("span", { class: "layer" }, layer), make("b", {}, text || code), make("span", { class: "since" })];
+  if (unblock && i === 0) parts.push(make("span", { class: "unblock" }, unblock));
+  return make("li", {}, ...parts);
+}

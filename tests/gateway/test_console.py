@@ -1,0 +1,332 @@
+"""The web console in a real browser, in front of a robot that does what the test tells it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from pluto_bt.blackboard import messages as m
+from pluto_bt.commands.files import package_root
+from pluto_bt.gateway.access import whole
+from pluto_bt.gateway.link import Console
+from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.port import RunState
+from pluto_bt.maps.load import load_world
+from pluto_bt.modules.robot_file import load_robot_file
+from pluto_bt.modules.scenery import scenery
+
+from .browsers import PHONE, Screen, chromium
+from .conftest import Running
+
+EVIL = '<img src=x onerror="document.title=\'taken\'"><script>document.title="taken"</script>'
+POSE = m.Pose(0.0, (4.0, 3.0, 0.0, 0.5, 0.0, 0.0), (0.04, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.001))
+
+
+@pytest.fixture(scope="module")
+def browser() -> Iterator[Any]:
+    with chromium() as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def gateway() -> Iterator[Running]:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")))
+    one.pump()
+    yield one
+    one.end()
+
+
+@pytest.fixture
+def running(gateway: Running) -> Running:
+    """The gateway's process is the same for all tests here, the robot behind it is new."""
+    gateway.renew()
+    gateway.robot.write("Localization/Pose", POSE)
+    return gateway
+
+
+@pytest.fixture
+def open_console(browser: Any, running: Running) -> Iterator[Callable[..., Screen]]:
+    screens: list[Screen] = []
+
+    def open_one(path: str = "/", **how: Any) -> Screen:
+        screen = Screen(browser, running.url + path, **how)
+        screens.append(screen)
+        screen.waits_for("#link", "ms")
+        return screen
+
+    yield open_one
+    for screen in screens:
+        screen.close()
+    running.wait_until_nobody_is_there()
+
+
+def node(path: str, kind: str, name: str, depth: int, status: str = "IDLE", feedback: str = "") -> m.NodeState:
+    return m.NodeState(path, kind, name, depth, status, feedback, 0.0)
+
+
+@pytest.mark.parametrize("size", [(1440, 900), PHONE], ids=["desk", "phone"])
+def test_it_loads_without_a_complaint_and_shows_where_the_robot_is(
+    open_console: Callable[..., Screen], running: Running, size: tuple[int, int]
+) -> None:
+    screen = open_console(size=size)
+    screen.waits_for("#pose-x", "4.00")
+    running.robot.write("Localization/Pose", m.Pose(0.0, (5.25, 3.0, 0.0, 0.5, 0.0, 0.0)))
+    screen.waits_for("#pose-x", "5.25")
+    assert screen.text("#robot") == "pluto" and "yard" in screen.text("#place")
+    box = screen.page.locator("#stop").bounding_box()
+    assert box["y"] + box["height"] <= size[1] and box["width"] >= 200 and box["height"] >= 60, "STOP is always in sight, and large"
+    assert screen.page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
+    assert screen.complaints == []
+
+
+@pytest.mark.parametrize("how", ["click", "space", "space in a button"])
+def test_stop_says_when_zero_was_commanded(open_console: Callable[..., Screen], running: Running, how: str) -> None:
+    robot = running.robot
+    robot.write("ATRV2/Drive/Command", m.ActuatorState(0.0, 0, velocity=(0.4, 0.0)))
+    robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0, velocity=(0.4, 0.0)))
+    screen = open_console()
+    screen.waits_for("#speed", "0.40")
+    if how == "click":
+        screen.click("#stop")
+    else:
+        screen.page.locator("#lease-take" if how == "space in a button" else "#map").focus()
+        screen.page.keyboard.press("Space")
+    screen.waits_for("#stop-note", "sent")
+    robot.write("ATRV2/Drive/Command", m.ActuatorState(0.0, 0))
+    screen.waits_for("#stop-note", "zero commanded")
+    robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0))
+    screen.waits_for("#stop-note", "standing")
+    assert robot.did == [("stop", "console")], "once, without a lease, and the button was not pressed by the space bar"
+
+
+def test_a_space_in_a_text_is_a_space(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.click("#tab-params")
+    screen.page.locator("#params-filter").press_sequentially("a b")
+    assert screen.page.input_value("#params-filter") == "a b"
+    assert "stop" not in [entry[0] for entry in running.robot.did]
+
+
+def test_a_tap_on_the_map_and_a_second_one_to_be_sure_send_the_robot(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.waits_for("#pose-x", "4.00")
+    screen.taps(8.05, 3.04)
+    screen.waits_for("#goal-place", "pump")
+    assert running.robot.did == [], "a tap alone moves nothing"
+    screen.click("#goal-goto")
+    screen.waits_for("#errand-text", "Go to 8.00, 3.00")
+    assert running.robot.did == [("run", "GoTo", {"goal": "8.000;3.000"}, 0.0)]
+    assert screen.text("#lease-chip") == "yours"
+    running.robot.runs["r1"] = RunState("failed", "stuck", "a wall is near")
+    screen.waits_for("#toast", "failed (stuck)", "a wall is near")
+
+
+def test_a_goal_while_a_mission_runs_pauses_it_and_says_so_before(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.mission_now = m.MissionState(0.0, "patrol", 1, "running")
+    running.robot.write("mission/state", running.robot.mission_now)
+    screen = open_console()
+    screen.waits_for("#mission-chip", "running")
+    screen.taps(6.0, 3.5)
+    screen.waits_for("#goal-note", "pauses the mission", "takes the lease")
+    screen.click("#goal-cancel")
+    assert running.robot.did == [] and screen.page.is_hidden("#goal-sheet")
+
+
+def test_the_tree_follows_what_runs_and_can_be_folded(open_console: Callable[..., Screen], running: Running) -> None:
+    rows = (node("0", "Sequence", "patrol", 1, "RUNNING"), node("0/0", "GoTo", "go", 2, "RUNNING", "2.5 m to go"), node("0/1", "Say", "Say", 2))
+    running.robot.write("tree", m.TreeState(0.0, 7, rows))
+    screen = open_console()
+    screen.waits_for("#tree", "go", "2.5 m to go", "running")
+    done = (rows[0], node("0/0", "GoTo", "go", 2, "FAILURE", "stuck"), rows[2])
+    running.robot.write("tree", m.TreeState(0.0, 8, done))
+    screen.waits_for("#tree li:nth-child(2)", "✕", "failure", "stuck")
+    screen.click("#tree li:first-child .fold")
+    assert screen.page.locator("#tree li").count() == 1
+    screen.click("#tree li:first-child .fold")
+    assert screen.page.locator("#tree li").count() == 3
+
+
+def test_a_large_tree_shows_the_running_branch(open_console: Callable[..., Screen], running: Running) -> None:
+    branches = [[node(f"0/{i}", "Sequence", f"part {i}", 2, "RUNNING" if i == 150 else "IDLE"),
+                 node(f"0/{i}/0", "GoTo", f"leaf {i}", 3, "RUNNING" if i == 150 else "IDLE")] for i in range(300)]  # fmt: skip
+    running.robot.write("tree", m.TreeState(0.0, 1, (node("0", "Parallel", "all", 1, "RUNNING"), *(one for branch in branches for one in branch))))
+    screen = open_console()
+    screen.waits_for("#tree", "leaf 150")
+    assert screen.page.locator("#tree li").count() == 302
+
+
+def test_names_that_are_html_stay_words(open_console: Callable[..., Screen], running: Running) -> None:
+    robot = running.robot
+    robot.mission_now = m.MissionState(0.0, EVIL, 1, "paused", EVIL, EVIL)
+    robot.write("mission/state", robot.mission_now)
+    robot.write("tree", m.TreeState(0.0, 1, (node(EVIL, EVIL, EVIL, 1, "RUNNING", EVIL),)))
+    robot.write("modules", m.ModulesState(0.0, (m.ModuleState(EVIL, "g", EVIL, 1, 1, 0, 0.0, EVIL),)))
+    robot.says(EVIL, "error")
+    screen = open_console()
+    screen.waits_for("#tree", EVIL)
+    for tab, panel in (("mission", "#mission-step"), ("events", "#events"), ("modules", "#modules")):
+        screen.click(f"#tab-{tab}")
+        screen.waits_for(panel, EVIL)
+    assert screen.page.evaluate("document.querySelectorAll('main img, main script').length") == 0
+    assert "taken" not in screen.page.title() and screen.complaints == []
+
+
+def test_two_browsers_and_one_lease(open_console: Callable[..., Screen], running: Running) -> None:
+    anna, ben = open_console("/?name=Anna"), open_console("/?name=Ben")
+    anna.click("#lease-take")
+    anna.waits_for("#lease-chip", "yours")
+    ben.waits_for("#lease-chip", "console Anna")
+    ben.waits_for("#lease-take", "Take over")
+    ben.taps(6.0, 3.5)
+    ben.waits_for("#goal-note", "console Anna holds the lease")
+    ben.click("#goal-goto")
+    ben.waits_for("#toast", "held by console Anna")
+    assert running.robot.did == []
+    ben.click("#lease-take")
+    ben.waits_for("#lease-chip", "yours")
+    anna.waits_for("#toast", "console Ben took the lease")
+    ben.close()
+    anna.waits_for("#lease-chip", "free")
+    assert running.robot.did[-1] == ("stop", "the lease of console Ben ended with his connection")
+
+
+def test_driving_begins_with_the_velocity_in_force_and_letting_go_is_zero(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.write("drive/status", m.FVectorState(0.0, (0.3, 0.0)))
+    screen = open_console()
+    screen.click("#tab-drive")
+    screen.waits_for("#real-v", "0.30")
+    screen.page.keyboard.down("ArrowUp")
+    assert running.robot.did == [], "nobody drives before he has taken the wheel"
+    screen.page.keyboard.up("ArrowUp")
+    screen.click("#drive-arm")
+    screen.waits_for("#drive-arm", "Let go")
+    screen.page.keyboard.down("ArrowUp")
+    screen.page.wait_for_function("() => parseFloat(document.querySelector('#told-v').textContent) >= 0.44")
+    screen.page.keyboard.up("ArrowUp")
+    screen.waits_for("#told-v", "0.00")
+    while running.robot.did[-1] != ("command", "motion", 30, (0.0, 0.0)):
+        screen.page.wait_for_timeout(10)
+    speeds = [entry[3][0] for entry in running.robot.did if entry[0] == "command"]  # type: ignore[index]
+    assert speeds[0] == pytest.approx(0.3 + 0.12 * 0.45, abs=0.02), "it goes on from what the robot does"
+    assert speeds[:-1] == sorted(speeds[:-1]) and max(speeds) <= 0.45, "half of what the robot can is the limit"
+
+
+def test_the_emergency_stop_holds_until_it_is_released(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.click("#estop")
+    running.robot.says("emergency stop: console", "error", "estop")
+    screen.waits_for("#estop-note", "latched")
+    screen.page.wait_for_selector("#release")
+    other = open_console()
+    other.waits_for("#estop-note", "latched")
+    screen.click("#release")
+    running.robot.says("emergency stop released", "info", "estop-released")
+    for one in (screen, other):
+        one.page.wait_for_selector("#release", state="hidden")
+    assert [entry[0] for entry in running.robot.did] == ["estop", "release"]
+
+
+def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.waits_for("#pose-x", "4.00")
+    process = running.link._process
+    assert process is not None
+    process.kill()
+    screen.waits_for("#no-link", "No link", "old")
+    screen.waits_for("#verdict", "Unknown")
+    screen.waits_for("#link", "ms")
+    screen.page.wait_for_selector("#no-link", state="hidden")
+
+
+def test_a_robot_that_ends_says_so_before(browser: Any) -> None:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")))
+    one.pump()
+    screen = Screen(browser, one.url)
+    screen.waits_for("#link", "ms")
+    one.end()
+    screen.waits_for("#no-link", "No link", "the robot's software ends")
+    screen.close()
+
+
+def test_what_is_too_old_is_told_with_its_age(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.waits_for("#pose-age", "old")
+    assert "old" in screen.page.get_attribute(".readout", "class")
+    screen.click("#tab-signals")
+    screen.waits_for("#signals", "Localization/Pose", "old")
+
+
+def test_why_is_told_with_what_would_help(open_console: Callable[..., Screen]) -> None:
+    screen = open_console()
+    screen.waits_for("#verdict", "Standing")
+    screen.waits_for("#causes li:first-child", "sensor", "front panel pressed", "back off")
+
+
+def test_modules_are_started_and_stopped(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.write("modules", m.ModulesState(0.0, (m.ModuleState("slam", "estimation", "running", 10, 0, 0, 1.5),)))
+    screen = open_console()
+    screen.click("#tab-modules")
+    screen.waits_for("#modules", "slam", "running", "1.5 ms")
+    screen.click("#modules button")
+    screen.waits_for("#toast", "slam: stop ordered")
+    running.robot.write("modules", m.ModulesState(0.0, (m.ModuleState("slam", "estimation", "stopped", 10, 0, 0, 1.5),)))
+    screen.waits_for("#modules", "stopped")
+    screen.click("#modules button")
+    screen.waits_for("#toast", "slam: start ordered")
+    assert running.robot.did == [("module", "slam", "stop"), ("module", "slam", "start")]
+
+
+def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "running"))
+    screen = open_console()
+    screen.click("#tab-mission")
+    screen.click("[data-op=pause]")
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "paused", "operator-stop"))
+    screen.waits_for("#mission-state", "paused", "operator-stop")
+    screen.click("[data-op=abort]")
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "aborted"))
+    screen.waits_for("#mission-state", "aborted")
+    assert screen.page.is_disabled("[data-op=resume]")
+    screen.page.select_option("#mission-choice", "trip2")
+    screen.click("#mission-start")
+    while len(running.robot.did) < 4:
+        screen.page.wait_for_timeout(10)
+    assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
+
+
+def test_with_people_known_by_tokens_the_page_asks_for_one(browser: Any) -> None:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")), whole("sesame"))
+    one.pump()
+    screen = Screen(browser, one.url)
+    try:
+        for token in ("sesam", "sesame"):
+            screen.page.fill("#token", token)
+            screen.page.keyboard.press("Enter")
+        screen.waits_for("#link", "ms")
+        screen.click("#stop")
+        screen.waits_for("#stop-note", "zero commanded")
+    finally:
+        screen.close()
+        one.end()
+
+
+def test_parameters_are_set_all_or_none_and_go_back_unless_kept(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.click("#tab-params")
+    screen.waits_for("#params", "margin_m", "m · >= 0", "usually 0.08")
+    field = screen.page.locator("#params input")
+    assert field.input_value() == "0.1"
+    field.fill("0.2")
+    screen.waits_for("#params-note", "1 to set")
+    screen.click("#params-set")
+    screen.waits_for("#params-left", "goes back in")
+    screen.click("#params-keep")
+    screen.waits_for("#toast", "Parameters kept")
+    changes = [entry[1:] for entry in running.robot.did if entry[0] == "params" and entry[1] != "get"]
+    assert changes == [("set", {"avoid.margin_m": "0.2"}, 30.0), ("set", {}, 0.0)]
+    assert screen.complaints == []
