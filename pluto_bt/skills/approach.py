@@ -59,7 +59,9 @@ class Approach:
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
-        moved = walked(heard_m, places, axes, near, half_rad) | came
+        swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
+        stays = heard_m[-1] * swept_rad < TURNING_M  # where a cone ends while the robot turns is not known well enough to say what was free
+        moved = walked(heard_m, places, axes, near, half_rad) | (came & stays)
         if not moved.any():
             return NOTHING
         x, y, theta = places[-1].tolist()
