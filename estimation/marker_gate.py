@@ -29,7 +29,7 @@ class MarkerGate:
 
     def judge(self, stamp_s: float, pose_map_robot: Pose2, quality: float, heading_rad: float) -> str:
         """ "" if the marker passes (it is then the last accepted one), else why not. `heading_rad` is the gyro's at the stamp."""
-        if not quality >= self.min_quality:
+        if not self.min_quality <= quality < math.inf:
             return LOW_QUALITY
         x, y, theta = pose_map_robot
         if not math.isfinite(theta) or abs(wrap_angle(theta - heading_rad)) > self.max_heading_error_rad:

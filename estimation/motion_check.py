@@ -1,7 +1,7 @@
 """Do gyro, wheels and laser tell of the same motion? Three witnesses; whoever stands alone is not believed.
 
-The laser sees how the robot moved since a scan of a moment ago (`scan_match`), and that is compared with what localisation reckons with:
-the turn (`turn_trial`), the way (`way_trial`), and whether the scan fits at all. One that fits nowhere near, followed by one that fits to it,
+The laser sees how the robot moved since a scan of a moment ago (`key_scan`), and that is compared with what localisation reckons with: the
+turn (`turn_trial`), the way (`way_trial`), and whether the scan fits at all. One that fits nowhere near, followed by one that fits to it,
 was taken in another place, and nobody knows where: the robot is lost until somebody posts where it is. People who stand round it may hide
 so much that a scan looks like that too; so the place before is kept, and when it comes into view again, where it must be, nobody is lost.
 """
@@ -14,11 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from estimation.home_scan import Home, KeyScan, difference
+from estimation.home_scan import Home
+from estimation.key_scan import KeyScan, best_match, difference, is_good, is_odd
 from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
-from estimation.scan_match import ScanStep, match_scans
-from estimation.se2 import IDENTITY, Pose2, between, compose, inverse
+from estimation.scan_match import ScanStep
+from estimation.se2 import Pose2, compose, inverse
 from estimation.trim import OF_GYRO, OF_WHEELS, Trim
 from estimation.turn_trial import TurnTrial
 from estimation.way_trial import WayTrial
@@ -26,11 +27,7 @@ from estimation.way_trial import WayTrial
 Array = NDArray[np.float64]
 
 LEAST_BEAMS = 0.75  # of a scan must be numbers
-FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
-GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
-NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
 MOST_PAN_RAD = 1.6  # a laser that was panned farther sees too little of the same
-CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
@@ -137,15 +134,15 @@ class MotionCheck:
         if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
             self.found()
             self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
-        match = self._best_match(key, scan, motion, first_rad, step_rad)
+        match = best_match(key, scan, motion, first_rad, step_rad, self._limits.max_range_m)
         self.fits = match.fits
-        if match.points >= LEAST_POINTS and match.fits >= GOOD_FIT:
-            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not _is_odd(home):
+        if is_good(match):
+            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not is_odd(home):
                 self._is_elsewhere = False
             self._weigh(scan, key, motion, match)
             self._looked_s = stamp_s
             return
-        self._is_elsewhere = not self._is_elsewhere and _is_odd(match) and not (_is_crowded(key) or _is_crowded(scan))
+        self._is_elsewhere = not self._is_elsewhere and is_odd(match) and not (key.is_crowded or scan.is_crowded)
         if self._is_elsewhere and not self._is_carried_off:
             self._home = Home(key)
         self._renew(scan)
@@ -159,23 +156,7 @@ class MotionCheck:
         home = self._home.key
         if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
             return None
-        return self._best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad)
-
-    def _best_match(self, key: KeyScan, scan: KeyScan, motion: Motion, first_rad: float, step_rad: float) -> ScanStep:
-        """From where localisation believes to be; if that fits badly also from where the wheels' turn leads, and from no motion at all."""
-        x, y, _ = motion.pose
-        best: ScanStep | None = None
-        for pose in (motion.pose, (x, y, motion.wheels_rad), IDENTITY):
-            guess = between(key.arm, compose(pose, scan.arm))
-            match = match_scans(key.ranges_m, scan.ranges_m, first_rad, step_rad, guess, min(self._limits.max_range_m, FARTHEST_M))
-            if best is None:
-                best = match
-            elif match.fits > best.fits + 0.1:
-                best = match._replace(fits_as_guessed=best.fits_as_guessed)
-            if best.fits >= GOOD_FIT:
-                break
-        assert best is not None
-        return best
+        return best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad, self._limits.max_range_m)
 
     def _weigh(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
         """A good match: does it tell of the motion that was reckoned?"""
@@ -245,17 +226,6 @@ class MotionCheck:
 
     def _renew(self, scan: KeyScan) -> None:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
-
-
-def _is_odd(match: ScanStep) -> bool:
-    """True if the scans are of two places: few points fit, and both sides differ, or hardly any fits at all."""
-    both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
-    return match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
-
-
-def _is_crowded(scan: KeyScan) -> bool:
-    """True if something near fills much of the scan."""
-    return bool(np.count_nonzero(scan.ranges_m < CROWD_M) > CROWDED * len(scan.ranges_m))
 
 
 def _is_far(pose: Pose2, times: float) -> bool:

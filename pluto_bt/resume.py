@@ -20,7 +20,6 @@ from pluto_bt.trees import Mission, memory
 from pluto_bt.trees.journal import Past, Pose, read_journal
 
 HELD = "held"
-POLICIES = ("hold", "ask", "resume")
 
 
 @dataclass(frozen=True)

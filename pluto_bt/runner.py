@@ -125,7 +125,7 @@ class Runner:
     def _outcome(self) -> tuple[str, str, str]:
         """(result, reason, sentence)."""
         system, activity = self.system, self.system.executive.core.mission
-        if activity is not None and activity.error is not None:
+        if activity is not None and activity.error is not None and activity.state != ABORTED:  # else it was over before a leaf raised
             return "STOPPED", "leaf-error", activity.text
         if system.guard.ended is not None:
             return system.guard.ended

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from functools import cache
+from pathlib import Path
+
+import msgspec
 import pytest
 
 from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.topics import LATER_WRITERS
+from pluto_bt.maps.platform import Platform
+from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.topic_globals import TopicGlobals, fields_of
 from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.source import PlutoError
@@ -65,3 +72,16 @@ def test_modules_that_need_each_other_are_refused() -> None:
     circle = (Module("a", "x:A", 1.0, "io", needs=("b",)), Module("b", "x:B", 1.0, "io", needs=("a",)))
     with pytest.raises(PlutoError, match="modules need each other: a -> b -> a"):
         in_start_order(circle)
+
+
+@cache
+def read_anywhere() -> frozenset[str]:
+    """Every attribute that the code of the package asks for."""
+    package = Path(__file__).parent.parent / "pluto_bt"
+    return frozenset(name for path in package.rglob("*.py") for name in re.findall(r"\.(\w+)", path.read_text(encoding="utf-8")))
+
+
+@pytest.mark.parametrize("table", sorted(set(RobotFile.__struct_fields__) - set(Platform.__struct_fields__)))
+def test_each_parameter_of_a_module_is_read_by_somebody(table: str) -> None:
+    kind = next(field.type for field in msgspec.structs.fields(RobotFile) if field.name == table)
+    assert [name for name in kind.__struct_fields__ if name not in read_anywhere()] == []

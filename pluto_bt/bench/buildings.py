@@ -55,7 +55,7 @@ class Building:
         things: list[Array] = []
         for k in range(1, 4):  # the side with the robot stays plain
             a, b = corners[k], corners[(k + 1) % 4]
-            outline += [a, *_bay(rng, a, b, outward)]
+            outline += [a, *_bay(rng, a, b)]
             if rng.random() < 0.6:
                 things.append(_thing(rng, a, b, outward))
         walls = _with_door(rng, np.array([*outline, corners[0]]))
@@ -73,7 +73,7 @@ class Building:
         return cls(f'<world name="building{seed}" seed="{seed}">{"".join(shapes)}{robot}</world>', edges, 2.0 * (width_m + depth_m))
 
 
-def _bay(rng: Rng, a: Array, b: Array, outward: float) -> list[Array]:
+def _bay(rng: Rng, a: Array, b: Array) -> list[Array]:
     """The corners of a bay or a niche, or of a slight bend, somewhere on the side from a to b; none on every third."""
     length_m = float(np.hypot(*(b - a)))
     along, out = (b - a) / length_m, np.array([(b - a)[1], -(b - a)[0]]) / length_m

@@ -36,9 +36,9 @@ class Inbox:
 
     def post(self, source: str, command: ActuatorState) -> str:
         """Leave a command. Returns "" or the code of the refusal (`wrong-state`: `source` does not own this inbox now)."""
-        if not self.is_owner(source):
-            return WRONG_STATE
-        with self._lock:
+        with self._lock:  # asked inside: a command that was let in before the latch closed must not come after the stop that follows it
+            if not self.is_owner(source):
+                return WRONG_STATE
             if self._letter is None or not self._letter.is_stop:
                 self._letter = Letter(source, command, False)
         self._wake()

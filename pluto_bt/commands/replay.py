@@ -44,6 +44,9 @@ def main(argv: list[str]) -> int:
         return execute(box, args.mission)
     if args.contracts:
         return contracts(box, args.mission)
+    if not len(box):
+        print("no tick was recorded", file=sys.stderr)
+        return 1
     if args.step:
         return step(box, at_s or 0.0)
     if at_s is not None:
@@ -59,9 +62,6 @@ def show(box: Box, number: int) -> int:
     """One tick."""
     from pluto_bt.commands.moment import moment
 
-    if number < 0:
-        print("no tick was recorded", file=sys.stderr)
-        return 1
     print(moment(box, number))
     return 0
 
@@ -122,8 +122,6 @@ def contracts(box: Box, mission: str | None) -> int:
 
 def step(box: Box, at_s: float) -> int:
     """Go through a run by hand; commands are read from the input, a line each."""
-    if not len(box):
-        return show(box, -1)
     number, is_asked = box.number_at(at_s), sys.stdin.isatty()
     if is_asked:
         print(KEYS)
@@ -137,7 +135,7 @@ def step(box: Box, at_s: float) -> int:
             return 0
         try:
             number = min(max(_moved(words)(box, number), 0), len(box) - 1)
-        except (PlutoError, ValueError):
+        except (PlutoError, ValueError, OverflowError):  # "at inf" is no time either
             print(KEYS, file=sys.stderr)
         print()
 

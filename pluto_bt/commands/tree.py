@@ -87,4 +87,3 @@ def _of_run(args: argparse.Namespace) -> Drawn | None:
     box = read_box(args.mission)
     number = last_at_work(box) if at_s is None else box.number_at(at_s)
     return of_box(box, number) if number >= 0 else None
-

@@ -30,7 +30,11 @@ def main(argv: list[str]) -> int:
     from pluto_bt.commands.boxes import read_box
     from pluto_bt.trees.why_box import why_at
 
-    answer = why_at(read_box(args.file), at_s)
+    box = read_box(args.file)
+    if not len(box):
+        print("no tick was recorded", file=sys.stderr)
+        return 1
+    answer = why_at(box, at_s)
     _print(answer.is_moving, [cause._asdict() for cause in answer.causes], args.json)
     return 0
 

@@ -11,7 +11,6 @@ from pluto_bt.groot.protocol import Desk
 from pluto_bt.source import Place
 from pluto_bt.source.faults import fail
 
-DEFAULT_PORT: Final = 1667
 LOOK_EVERY_MS: Final = 100
 SEND_WITHIN_MS: Final = 1000
 TRIES: Final = 20  # to find two free neighbours when any port will do

@@ -44,4 +44,3 @@ def read_calibration(path: Path, shown: str) -> Calibration:
     faults.raise_errors()
     assert calibration is not None  # build gives None only together with a fault
     return calibration
-

@@ -106,7 +106,7 @@ class Executive:
             return
         is_its = activity.mission is keeper.mission
         if is_its and activity in ticked:
-            keeper.after_tick(now_s, activity.ticks, lines[ticked.index(activity)])
+            keeper.after_tick(activity.ticks, lines[ticked.index(activity)])
         if not is_its or activity.is_over:
             keeper.end()
             self.keeper = None

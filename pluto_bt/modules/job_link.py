@@ -6,10 +6,11 @@ from typing import Final
 
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.blackboard.codes import GotoStatus, MotionStatus, MovetoStatus
-from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, Pair
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.robot_link import RobotLink, spoken_of
 from pluto_bt.skills.jobs import Job
+from pluto_bt.skills.limits import STILL
 
 INBOX: Final = "job"
 AVOIDANCE_COMMAND, AVOIDANCE_STATUS = "avoidance/command", "avoidance/status"
@@ -30,22 +31,11 @@ class JobLink(RobotLink):
         """See what the mission sees in this tick."""
         self._snapshot = self._robot.snapshot
 
-    def command(
-        self,
-        flags: int,
-        position: Pair = (0.0, 0.0),
-        velocity: Pair = (0.0, 0.0),
-        tolerance_m: float = 0.0,
-        force: float | tuple[float, ...] = 1.0,
-        *,
-        on_the_way: bool = False,
-    ) -> Ticket:
-        """Post a command for motion to pass down. A goto that has arrived stands already: no zero velocity takes its status away."""
-        if flags == 0 and velocity == (0.0, 0.0) and self._has_arrived():
+    def _send(self, command: ActuatorState, on_the_way: bool) -> Ticket:
+        """Post it for motion to pass down. A goto that has arrived stands already: no zero velocity takes its status away."""
+        if command.flags == 0 and command.velocity == STILL and self._has_arrived():
             assert self._last is not None
             return self._last
-        forces = force if isinstance(force, tuple) else (force,)
-        command = ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
         self._last = self._post(INBOX, self._job.source, command)
         return self._last
 

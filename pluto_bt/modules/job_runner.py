@@ -79,5 +79,3 @@ class JobRunner:
         if state != self._shown:
             self._shown = state
             self._state.put(msgspec.structs.replace(state, stamp_s=now_s), now_s)
-
-

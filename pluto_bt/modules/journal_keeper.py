@@ -8,7 +8,7 @@ from typing import Any
 from pluto_bt.runtime.clock import calendar_ns
 from pluto_bt.trees import Mission, memory
 from pluto_bt.trees.engine.status import RUNNING, SUCCESS, Result
-from pluto_bt.trees.journal import Journal, Line, Past, Pose
+from pluto_bt.trees.journal import Journal, Line, Past, Pose, key_of
 from pluto_bt.trees.memory import State
 
 AT_EVERY_S = 1.0
@@ -38,7 +38,7 @@ class JournalKeeper:
                 one.node.step = self._once(one.node, one.path, one.node.step)
         mission.watch(self._ended)
 
-    def after_tick(self, now_s: float, ticks: int, line: str) -> None:
+    def after_tick(self, ticks: int, line: str) -> None:
         """Write what has changed; sure to be on the disk before the next tick if a step has finished.
 
         `line`: the statuses of the tick. Where no leaf has ended and no status is new, nothing is remembered that matters.
@@ -78,7 +78,7 @@ class JournalKeeper:
         def act() -> Result:
             if node.status is not RUNNING:
                 count = self._begun[path] = self._begun.get(path, 0) + 1
-                key = f"{path}#{count}"
+                key = key_of(path, count)
                 if key in self._keys:
                     node.feedback_message = "done before the restart"
                     node.status = SUCCESS

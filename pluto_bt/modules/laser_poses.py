@@ -21,8 +21,8 @@ class Arm(NamedTuple):
     tilt_rad: float
 
 
-class LaserMount:
-    """Knows the laser's mount and the history of the wrist."""
+class LaserPlace:
+    """Knows the laser's mount and the history of the wrist, in space. (`mount.LaserMount` is its plain sister, as avoidance and filter need it.)"""
 
     def __init__(self, context: Context) -> None:
         laser = context.platform.devices.laser

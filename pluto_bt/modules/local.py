@@ -22,7 +22,7 @@ from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import Pose, ScanTiming
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
-from pluto_bt.modules.laser_poses import LaserMount, laser_pose
+from pluto_bt.modules.laser_poses import LaserPlace, laser_pose
 from pluto_bt.modules.motion_check_shown import MotionCheckShown
 from pluto_bt.modules.motion_sources import MotionSources
 from pluto_bt.modules.post_box import refusal
@@ -61,7 +61,7 @@ class Local:
         self._sources = MotionSources(context, p.step_noise(), p.yaw_enable)
         self._check = MotionCheckShown(context, self._sources.check)
         self._wheels_know_turns = context.platform.body.kinematics != "ackermann"
-        self._mount = LaserMount(context)
+        self._place = LaserPlace(context)
         self._box = context.posts
         self.track = Track(context.start_pose)
         self.dropped = 0  # posts and scans whose stamp is not in the history
@@ -115,7 +115,7 @@ class Local:
             return
         self._box.set_by, self._setter_s = post.setter, now_s
         if post.setter != Setter.NOBODY:
-            self._check.found(now_s)
+            self._check.found()
         self._post_pose.put(post, now_s)
 
     def _adjust(self, post: Pose, now_s: float) -> str:
@@ -126,7 +126,7 @@ class Local:
         pose, P = (post.pose[0], post.pose[1], post.pose[3]), from_nine(post.covariance)
         then = self.track.at(post.stamp_s)
         if post.setter > 0:
-            mount = None if then is None else self._mount.planar(then)
+            mount = None if then is None else self._place.planar(then)
             if mount is None:
                 self.dropped += 1
                 return "stamp-not-in-history"
@@ -157,7 +157,7 @@ class Local:
         if stamp_s > self.track.now.stamp_s:
             return  # odometry of that moment is still on its way
         self._timing_seq = sample.seq
-        then, arm = self.track.at(stamp_s), self._mount.arm(stamp_s)
+        then, arm = self.track.at(stamp_s), self._place.arm(stamp_s)
         if then is None or arm is None:
             self.dropped += 1
             return

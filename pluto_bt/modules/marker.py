@@ -88,7 +88,7 @@ class Marker:
         return was_far or not is_far
 
     def _bias_rad(self, off_rad: float) -> float:
-        """What five markers in a row agree upon against the gyro; 0 while they do not."""
+        """What most of the last `JUDGED` markers agree upon against the gyro, rad; 0 while it is small, or they are too few."""
         self._off_rad.append(off_rad)
         bias_rad = sorted(self._off_rad)[JUDGED // 2] if len(self._off_rad) == JUDGED else 0.0  # the median: one nonsense marker says nothing
         if abs(bias_rad) < math.radians(self._parameters.most_heading_bias_deg):

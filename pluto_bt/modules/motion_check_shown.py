@@ -46,7 +46,7 @@ class MotionCheckShown:
         x, y = arm.pose_robot_laser[:2]
         self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))
 
-    def found(self, now_s: float) -> None:
+    def found(self) -> None:
         """Somebody has posted where the robot is."""
         was_lost = self._check.lost
         self._check.found()

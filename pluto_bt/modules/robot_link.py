@@ -102,12 +102,15 @@ class RobotLink:
         *,
         on_the_way: bool = False,
     ) -> Ticket:
-        """Post a command to motion as `mission`; `acceleration[0]` carries the tolerance of a goto."""
+        """Send a command; `acceleration[0]` carries the tolerance of a goto."""
         forces = force if isinstance(force, tuple) else (force,)
-        command = ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces)
-        is_goto = 0 < flags < MotionCommand.MOVETO and flags % 10 == CommandType.GOTO
-        if flags == MotionCommand.MOVETO or (is_goto and not on_the_way):
-            self._note_goal(position, command.stamp_s)
+        return self._send(ActuatorState(self.now_s(), flags, position, velocity, (tolerance_m, 0.0), forces), on_the_way)
+
+    def _send(self, command: ActuatorState, on_the_way: bool) -> Ticket:
+        """Post it to motion as `mission`; a goal is noted for pictures."""
+        is_goto = 0 < command.flags < MotionCommand.MOVETO and command.flags % 10 == CommandType.GOTO
+        if command.flags == MotionCommand.MOVETO or (is_goto and not on_the_way):
+            self._note_goal(command.position, command.stamp_s)
         return self._post("motion", SOURCE, command)
 
     def _post(self, to: str, source: str, command: ActuatorState) -> Ticket:

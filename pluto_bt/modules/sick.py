@@ -35,9 +35,9 @@ class Sick:
         """Nothing to let go of."""
 
     def step(self, now_s: float) -> None:
-        """Publish each scan that has arrived."""
+        """Publish each scan that has arrived. One without beams is none: where only such come, the topics grow stale."""
         for record in self._device.read():
-            if isinstance(record, ScanRecord):
+            if isinstance(record, ScanRecord) and len(record.ranges_m):
                 self._publish(record, now_s)
 
     def _publish(self, record: ScanRecord, now_s: float) -> None:
@@ -45,7 +45,7 @@ class Sick:
         n = len(ranges)
         if n != self._n_beams:
             self._pick, self._n_beams = np.linspace(0, n - 1, RWI_POINTS).round().astype(np.intp), n  # 361 beams: every second one
-        self._tell_fatal(n > 0 and bool(ranges[0] == -1.0) and bool((ranges == -1.0).all()))
+        self._tell_fatal(bool(ranges[0] == -1.0) and bool((ranges == -1.0).all()))
         coarse_step_rad = record.angle_step_rad * (n - 1) / (RWI_POINTS - 1)
         self._rwi181.put(LaserScan(record.arrival_s, record.angle_min_rad, coarse_step_rad, read_only(ranges[self._pick]), RWI_POINTS), now_s)
         self._scan.put(LaserScan(record.stamp_s, record.angle_min_rad, record.angle_step_rad, ranges, n), now_s)

@@ -51,6 +51,7 @@ class Part:
         self.failed_at_ns = -HEALTHY_AFTER_NS
         self.resume_at_ns = 0
         self.has_given_up = False
+        self._has_failed = False  # since it was started last
         self._wanted: bool | None = None  # an order to start or stop, carried out by the part's own thread
         self._handed: deque[Callable[[], None]] = deque()  # what others want done between two steps
         self._back_off_ns = FIRST_BACK_OFF_NS
@@ -81,8 +82,8 @@ class Part:
 
     def step(self, now_ns: int) -> None:
         """One supervised step: never raises (but for what is not an Exception, such as the watchdog's interrupt)."""
-        if self._wanted is not None:
-            self._obey(now_ns)
+        if self._wanted is not None and not self._obey(now_ns):
+            return
         if not self.is_running or now_ns < self.resume_at_ns or self.has_given_up or self.fault == "hang":
             return
         began_ns = wall_ns()
@@ -91,7 +92,7 @@ class Part:
                 self._handed.popleft()()
             if self.fault == "raise":
                 raise InjectedError(f'the world script lets module "{self.module.name}" raise')
-            if self.resume_at_ns and not self.slow_ns:
+            if self._has_failed:
                 self._restart(now_ns)
             self.component.step(now_ns / NS)
             self.stepped_ns = now_ns
@@ -105,13 +106,20 @@ class Part:
         if self.slow_ns:
             self.resume_at_ns = now_ns + self.slow_ns
 
-    def _obey(self, now_ns: int) -> None:
+    def _obey(self, now_ns: int) -> bool:
+        """Start or stop as ordered; False if the component raised. One that cannot start stays stopped, with the error beside it."""
         wanted, self._wanted = self._wanted, None
-        if wanted:
-            self.has_given_up, self.resume_at_ns, self.error = False, 0, ""
-            self.start(now_ns)
-        else:
-            self.stop()
+        try:
+            if wanted:
+                self.has_given_up = self._has_failed = False
+                self.resume_at_ns, self.error = 0, ""
+                self.start(now_ns)
+            else:
+                self.stop()
+        except Exception as error:
+            self._fail(now_ns, error)
+            return False
+        return True
 
     def _note_slow(self, took_ns: int) -> None:
         """The slowest step so far, or one over budget. The first step does not count: it pays for imports and caches."""
@@ -127,7 +135,7 @@ class Part:
             self._back_off_ns = FIRST_BACK_OFF_NS
         last_chance_ns = FIRST_BACK_OFF_NS << RESTARTS_OF_A_CRITICAL_PART
         self.has_given_up = self.module.critical and self._back_off_ns >= last_chance_ns
-        self.failed_at_ns = now_ns
+        self.failed_at_ns, self._has_failed = now_ns, True
         self.resume_at_ns = now_ns + self._back_off_ns
         self._back_off_ns = min(2 * self._back_off_ns, LONGEST_BACK_OFF_NS)
         self.listener.part_failed(self, error, self.has_given_up)
@@ -135,7 +143,7 @@ class Part:
     def _restart(self, now_ns: int) -> None:
         self.component.stop()
         self.component.start(now_ns / NS)
-        self.resume_at_ns = 0
+        self._has_failed, self.resume_at_ns = False, 0
         self.listener.part_restarted(self)
 
     @property
@@ -145,7 +153,7 @@ class Part:
             return "failed"
         if not self.is_running:
             return "stopped"
-        return "restarting" if self.resume_at_ns and not self.slow_ns else "running"
+        return "restarting" if self._has_failed else "running"
 
 
 Waker = Callable[[], None]

@@ -28,7 +28,6 @@ class MotionParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     ground_look_m: Annotated[Positive, Meta(description="how far a scan that looks down is believed about the ground")] = 6.0
     ground_step_m: Annotated[Positive, Meta(description="smallest step up or down that is an obstacle")] = 0.08
     ground_memory_s: Annotated[Positive, Meta(description="how long low obstacles and holes are remembered")] = 120.0
-    ground_tilt_deg: Annotated[NotNegative, Meta(description="how far the laser is tilted to look at the ground ahead")] = 10.0
     coverage_m: Annotated[Positive, Meta(description="explore counts as explored what was seen from so near")] = 5.0
     largest_object_m: Annotated[Positive, Meta(description="what is larger is no object to investigate")] = 4.0
     object_reach_m: Annotated[Positive, Meta(description="objects farther away are not looked for")] = 15.0

@@ -19,4 +19,3 @@ class PlanParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_f
     ahead_m: Annotated[Positive, Meta(description="the robot is steered to a point so far ahead on its way")] = 2.0
     seen_cell_m: Annotated[Positive, Meta(description="side of a cell of the memory of what stands in the way")] = 0.1
     stuck_after_s: Annotated[Positive, Meta(description="who has not come on along his way for so long is stuck")] = 12.0
-    turn_rate_dps: Annotated[Positive, Meta(description="how fast it turns to the heading asked for at the goal")] = 30.0

@@ -130,7 +130,8 @@ class Sight:
             self._changed_at = robot
             return False
         is_open = self.laser is not None and float(np.nanmin(ranges)) >= self.laser.max_range_m  # an empty field always looks the same
-        has_moved = math.hypot(robot[0] - at[0], robot[1] - at[1]) > FROZEN_TRAVEL_M or abs(robot[2] - at[2]) > FROZEN_TURN_RAD
+        turned_rad = math.remainder(robot[2] - at[2], math.tau)
+        has_moved = math.hypot(robot[0] - at[0], robot[1] - at[1]) > FROZEN_TRAVEL_M or abs(turned_rad) > FROZEN_TURN_RAD
         return has_moved and not is_open
 
     def _listen(self, sonar: SonarState, ring: SonarRing, robot: Planar, with_laser: bool, now_s: float) -> None:

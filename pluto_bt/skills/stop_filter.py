@@ -24,9 +24,9 @@ from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
 from pluto_bt.skills.sonar import sonar_code, where_word
 from pluto_bt.skills.stop_path import first_trouble, rim_of
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
+from pluto_bt.skills.wheel_watch import WheelWatch
 
 __all__ = ["FilterSenses", "StopFilter"]
-from pluto_bt.skills.wheel_watch import WheelWatch
 
 BRAKING_SHARE = 0.8  # of the deceleration is counted on; the rest is in reserve for slopes and worn brakes
 HALVINGS = 5  # the share of a command that may pass is found to 3 %

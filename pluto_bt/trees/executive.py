@@ -73,9 +73,11 @@ class Activity:
 
     def end(self, reason: str) -> None:
         """Halt the tree for good."""
-        if not self.is_over:
+        self.state, self.reason = ABORTED, reason  # first: over is over, also if a leaf raises while it lets go
+        try:
             self.mission.halt()
-            self.state, self.reason = ABORTED, reason
+        except TickError as error:
+            self.error, self.text = error, str(error)
 
 
 class Executive:
@@ -167,7 +169,7 @@ class Executive:
     def end_job(self, reason: str) -> None:
         """Halt the tree of the job; harmless if it is over. Called by the thread that steps."""
         if self.job is not None:
-            self.job.end(reason)
+            self._end(self.job, reason)
 
     def end_errand(self, errand: Activity, reason: str) -> None:
         """End an errand; harmless if it is over."""
@@ -194,6 +196,14 @@ class Executive:
         self._body.stop()
         self._orders.append((lambda: self._abort(reason), {RUNNING: ABORTED, PAUSED: ABORTED}))
 
+    def _end(self, activity: Activity, reason: str) -> None:
+        """Halt an activity for good; a leaf that raises while it lets go is told. Harmless if it is over."""
+        if activity.is_over:
+            return
+        activity.end(reason)
+        if activity.error is not None:
+            self._say("error", "leaf-error", activity.text)
+
     def _start(self, mission: Mission, held: str) -> None:
         self._abort("preempted")
         self._runs += 1
@@ -205,19 +215,19 @@ class Executive:
 
     def _start_errand(self, errand: Activity) -> None:
         if self.errand is not None:
-            self.errand.end("preempted")
+            self._end(self.errand, "preempted")
         self.errand = errand
         self.note("start-errand", errand.number)
         self.on_begin(errand)
 
     def _end_errand(self, errand: Activity, reason: str) -> None:
-        errand.end(reason)
+        self._end(errand, reason)
         self.note("end-errand", errand.number, reason)
 
     def _pause(self, reason: str) -> None:
         self.note("pause", text=reason)
         if self.errand is not None:
-            self.errand.end(reason)
+            self._end(self.errand, reason)
         if self.mission is not None and self.mission.state == RUNNING:
             self.mission.state, self.mission.reason = PAUSED, reason
             self._say("warning", reason, f"mission paused: {reason}")
@@ -225,7 +235,7 @@ class Executive:
     def _resume(self) -> None:
         self.note("resume")
         if self.errand is not None:
-            self.errand.end("preempted")
+            self._end(self.errand, "preempted")
         if self.mission is not None and self.mission.state == PAUSED:
             self.mission.state, self.mission.reason = RUNNING, ""
             self._body.resumed()
@@ -235,4 +245,4 @@ class Executive:
         self.note("abort", text=reason)
         for activity in (self.errand, self.mission):
             if activity is not None:
-                activity.end(reason)
+                self._end(activity, reason)

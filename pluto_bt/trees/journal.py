@@ -87,14 +87,34 @@ def _take(past: Past, line: Line) -> None:
     past.hashes = line.hashes or past.hashes
     past.pose, past.truth = line.pose or past.pose, line.truth or past.truth
     past.is_over = line.kind == "end"
-    if line.kind == "step":
-        past.keys.clear()  # `begun` counts what was done up to here
     past.keys.update(dict.fromkeys(line.keys))
     past.begun.update(line.begun)
+    for key in [key for key in past.keys if _is_counted(key, past.begun)]:
+        del past.keys[key]
     past.finished = [*past.finished, *line.finished][-FINISHED_KEPT:] if line.finished else past.finished
     past.tick = line.tick or past.tick
     if line.change:
         past.state = memory.merged(past.state, line.change)
+
+
+def key_of(path: str, count: int) -> str:
+    """The key of a side effect: the node, and how often it has begun."""
+    return f"{path}#{count}"
+
+
+def _is_counted(key: str, begun: dict[str, int]) -> bool:
+    """True if `begun` has gone past this key already: whoever goes on will not ask for it again."""
+    path, _, count = key.rpartition("#")
+    return count.isdigit() and int(count) <= begun.get(path, 0)
+
+
+def _make_sure(folder: Path) -> None:
+    """Have what was renamed in a folder on the disk."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 class Journal:
@@ -131,8 +151,9 @@ class Journal:
         draft = self.path.with_name(self.path.name + ".new")
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with draft.open("wb") as file:
-            file.write(b"".join(msgspec.json.encode(line) + b"\n" for line in ((begin, now) if past.state["nodes"] else (begin,))))
+            file.write(b"".join(msgspec.json.encode(line) + b"\n" for line in ((begin, now) if past.has_begun else (begin,))))
             file.flush()
             os.fsync(file.fileno())
         os.replace(draft, self.path)
+        _make_sure(self.path.parent)
         return self.path.open("ab")

@@ -10,12 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
-from pluto_bt.behaviours.reasons import REASONS
-from pluto_bt.blackboard.codes import LinkStatus, status_name
+from pluto_bt.blackboard.codes import status_name
 from pluto_bt.record.entries import Link
 from pluto_bt.record.trail import Trail, Trouble
 from pluto_bt.skills import reasons
-from pluto_bt.skills.reasons import CHAIN_REASONS
+from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, cure, meaning, rank
 
 LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
 LOCALISATION: Final = "localisation"
@@ -23,22 +22,6 @@ CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "m
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
 STUCK_S: Final = 25.0  # the same for who is stuck: goto tries for 20 s to come nearer, and is held back only now and then
 BASE_TOPICS: Final = ("ATRV2/Bumper", "ATRV2/Sonar", "ATRV2/Battery")
-ODOMETRY: Final = "ATRV2/Drive/Raw"
-WHEEL_SLIP: Final = "wheel-slip"
-OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
-    reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
-    reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
-    reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
-    reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
-    reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
-    WHEEL_SLIP: ("wheels", ""),
-    "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
-    reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
-}  # fmt: skip
-OF_CODE: Final[dict[int | None, str]] = {
-    LinkStatus.LASER_FATAL: reasons.LASER_FATAL, LinkStatus.LASER_SLOW_STOP: reasons.LASER, LinkStatus.FRONT_BUMPER: reasons.BUMPER,
-    LinkStatus.BACK_BUMPER: reasons.BUMPER, LinkStatus.COMMAND_TIMEOUT: reasons.COMMAND_TIMEOUT,
-}  # fmt: skip
 
 
 class NodeAtWork(NamedTuple):
@@ -113,8 +96,7 @@ def _person(view: View) -> Cause | None:
     if word:
         return _cause("operator", word, text, _since(view, "hold"))
     if view.paused:
-        return _cause("operator", reasons.OPERATOR_STOP if view.paused == "operator" else view.paused, f"the mission was paused: {view.paused}",
-                      _since(view, "mission"))  # fmt: skip
+        return _cause("operator", view.paused, f"the mission was paused: {view.paused}", _since(view, "mission"))
     return None
 
 
@@ -152,13 +134,13 @@ def _sensor(view: View) -> Cause | None:
     stale = view.trail.situation.stale
     if ODOMETRY in stale and any(word in (reasons.ODOMETRY_STALE, reasons.NO_POSE, reasons.SONAR_STALE, "base-lost") for word in words):
         return _base(view)
-    ranked = sorted(range(len(words)), key=lambda i: (_rank(words[i]), i))
+    ranked = sorted(range(len(words)), key=lambda i: (rank(words[i]), i))
     if words[ranked[0]] not in OF_SENSOR:
         return None
     trouble = complaints[ranked[0]][1]
     word = words[ranked[0]]
     device, topic = OF_SENSOR[word]
-    text = trouble.link.text or CHAIN_REASONS.get(word) or REASONS[word].meaning
+    text = trouble.link.text or meaning(word)
     return _cause("sensor", word, f"{device}: {text}", trouble.since_ns / 1e9, _age(view, topic))
 
 
@@ -185,15 +167,6 @@ def _complaints(view: View) -> Iterator[tuple[str, Trouble]]:
     word = view.ended[1] or view.trail.situation.ended[0]
     if word:
         yield "mission", Trouble(Link((), word, view.ended[2] or view.trail.situation.ended[1]), round(_since(view, "mission") * 1e9))
-
-
-def _rank(word: str) -> int:
-    """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
-    if word in (reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN, reasons.BUMPER):
-        return 0
-    if word in (reasons.NO_POSE, reasons.LOST, "tilted", "hindered", reasons.OUTSIDE_MAP):
-        return 1
-    return 2 if word in OF_SENSOR else 3
 
 
 def _plain_end(view: View) -> Cause | None:
@@ -236,17 +209,7 @@ def _mission(view: View) -> Iterator[Cause]:
 
 
 def _cause(layer: str, code: str, text: str, since_s: float, age_s: float = 0.0, unblock: str = "") -> Cause:
-    cure = REASONS[code].cure if code in REASONS else ""
-    return Cause(layer, code, text, since_s, age_s, unblock or cure or _CURES.get(code, ""))
-
-
-_CURES: Final = {
-    reasons.LASER: "clear the way, or wait until what stands there has gone",
-    reasons.SONAR: "clear the way, or wait until what stands there has gone",
-    WHEEL_SLIP: "look at the ground under the wheels; push the robot, or drive it out by hand",
-    "paused": "`pluto shell resume`",
-    "operator": "`pluto shell resume`",
-}  # fmt: skip
+    return Cause(layer, code, text, since_s, age_s, unblock or cure(code))
 
 
 def _code(link: Link) -> int | None:

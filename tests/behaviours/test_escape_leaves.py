@@ -109,5 +109,3 @@ def test_is_stuck_by_each_sign(stage: Stage, sign: str, goto: FVectorState, alar
 def test_is_tilted(stage: Stage, port: str, tilt_deg: float, status: str) -> None:
     alarm(stage, tilted=tilt_deg > 50, tilt_rad=math.radians(tilt_deg))
     assert stage.tick(stage.load(f"<IsTilted {port}/>")) == status
-
-

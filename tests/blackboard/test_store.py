@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox, Sample, TopicError
 from pluto_bt.blackboard.codes import Avoidance, CommandType, LinkStatus, code_name, split_flags, status_name
+from pluto_bt.blackboard.inbox import Letter
 from pluto_bt.blackboard.messages import ActuatorState, BatteryState, LaserScan, Pose, read_only
 from pluto_bt.blackboard.poses import pose_at
 
@@ -143,6 +144,26 @@ class TestInbox:
         inbox.stop("shell", 0.0)
         letter = inbox.take()
         assert letter is not None and letter.is_stop
+
+    def test_who_asks_while_the_latch_closes_does_not_get_in_behind_the_stop(self) -> None:
+        """The command is let in, then the stop comes and is taken: nothing may be left for the link."""
+        taken: list[Letter | None] = []
+
+        def stop_and_take() -> None:
+            inbox.stop("operator", 1.0)
+            taken.append(inbox.take())
+
+        operator = threading.Thread(target=stop_and_take)
+
+        def is_owner(source: str) -> bool:
+            operator.start()
+            operator.join(0.05)  # as long as it likes, if nothing holds it up
+            return True
+
+        inbox = Inbox("drive", is_owner)
+        inbox.post("avoid", ActuatorState(0.0, 1))
+        operator.join()
+        assert taken[0] is not None and taken[0].is_stop and inbox.take() is None
 
 
 class TestTables:

@@ -18,6 +18,7 @@ NAN = math.nan
         (1.0, 1.0, 0.0, 1.479, 0.0, ""),  # values above 1 exist
         (1.0, 1.0, 0.0, 0.2499, 0.0, "low-quality"),
         (1.0, 1.0, 0.0, NAN, 0.0, "low-quality"),
+        (1.0, 1.0, 0.0, math.inf, 0.0, "low-quality"),
         (1.0, 1.0, 44.9, 0.5, 0.0, ""),
         (1.0, 1.0, 45.1, 0.5, 0.0, "bad-heading"),
         (1.0, 1.0, -170.0, 0.5, 170.0, ""),  # 20 degrees, across the seam

@@ -50,6 +50,15 @@ def test_a_fatal_error_is_minus_one_everywhere_and_said_once_each_way(make_rig: 
     assert rig.codes() == ["laser-fatal", "laser-back"]
 
 
+def test_a_scan_without_beams_is_none_and_one_with_a_single_beam_is_one(make_rig: Any) -> None:
+    rig = make_rig()
+    sick = Sick(rig.context)
+    for k, n_beams in enumerate((0, 1, 0)):
+        rig.devices["laser"].records = [ScanRecord(0.2 * k, 0.2 * k + 0.19, 0.0, 0.01, read_only(np.full(n_beams, 2.0)))]
+        sick.step(0.2 * k + 0.2)
+    assert (rig.newest("sick/scan").stamp_s, rig.newest("sick/scan").count, rig.newest("sick/timing").count) == (0.2, 1, 1)
+
+
 def gyro(k: int, rate: float, theta: float = math.nan) -> InertialRecord:
     return InertialRecord(k * 0.02, k * 0.02, (0.0, 0.0, rate), LEVEL, theta, 0.0, 0.0)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import re
 from itertools import pairwise
@@ -140,6 +141,25 @@ def test_a_file_that_is_no_black_box_is_refused(tmp_path: Path, capsys: pytest.C
         assert "is no MCAP file" in capsys.readouterr().err
         assert main([command, str(tmp_path / "none.mcap")]) == 2
         assert "expected  a black box" in capsys.readouterr().err
+
+
+def test_a_run_can_be_gone_through_by_hand_and_a_box_without_ticks_says_so(
+    scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "m.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="m"><Sleep msec="900"/></BehaviorTree></root>', encoding="utf-8")
+    scenario("yard.xml", mission=str(tmp_path / "m.xml"), record=tmp_path / "a.mcap")
+    keys = ["n", "", "p", "+3", "-1", "at 0.5", "c", "at inf", "at nan", "at", "sideways", "q"]
+    monkeypatch.setattr("sys.stdin", io.StringIO("\n".join(keys) + "\n"))
+    assert main(["replay", str(tmp_path / "a.mcap"), "--step"]) == 0
+    told = capsys.readouterr()
+    shown = [int(number) for number in re.findall(r"^tick (\d+)", told.out, re.M)]
+    assert shown[:6] == [1, 2, 3, 2, 5, 4] and len(shown) == len(keys)
+    assert told.err.count("Enter or n = next") == 4, "two times that are none, and two lines that mean nothing"
+    data = (tmp_path / "a.mcap").read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(data[:2000])
+    for words in (["replay"], ["replay", "--step"], ["replay", "--at", "1"], ["why"]):
+        assert main([words[0], str(tmp_path / "cut.mcap"), *words[1:]]) == 1
+        assert "no tick was recorded" in capsys.readouterr().err
 
 
 def test_a_spoiled_black_box_is_refused_or_read_but_never_a_traceback(scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -172,6 +172,42 @@ class TestSupervision:
         scheduler.run_until(NS // 10)
         assert part.state == "running" and [name for name, _ in log].count("a starts") == 2
 
+    def test_a_part_that_cannot_obey_is_told_and_the_others_go_on(self) -> None:
+        log: list[tuple[str, float]] = []
+        told = Told()
+        bad = Recorder("bad", [])
+        scheduler, _ = lockstep((row("bad", 0.1), bad), (row("good", 0.1), Recorder("good", log)), told=told)
+        part = scheduler.parts[0]
+
+        def refuse(now_s: float = 0.0) -> None:
+            raise OSError("the port is taken")
+
+        bad.stop = refuse  # type: ignore[method-assign]
+        part.order(False)
+        scheduler.run_until(NS // 10)
+        assert told.failed == [("bad", False)] and part.state == "stopped"
+        own_start, bad.start = bad.start, refuse  # type: ignore[method-assign]
+        part.order(True)
+        scheduler.run_until(NS)
+        assert len(told.failed) == 2 and part.state == "stopped" and part.error == "OSError: the port is taken"
+        assert [name for name, _ in log].count("good") == 11
+        bad.start = own_start  # type: ignore[method-assign]
+        part.order(True)
+        scheduler.run_until(2 * NS)
+        assert part.state == "running" and part.error == "" and not told.restarted
+
+    def test_a_slow_part_is_not_started_again_when_it_is_quick_again(self) -> None:
+        log: list[tuple[str, float]] = []
+        told = Told()
+        scheduler, _ = lockstep((row("a", 0.1), Recorder("a", log)), told=told)
+        part = scheduler.parts[0]
+        part.slow_ns = NS // 2
+        scheduler.run_until(NS)
+        part.slow_ns = 0
+        assert part.state == "running"
+        scheduler.run_until(2 * NS)
+        assert not told.restarted and [name for name, _ in log].count("a starts") == 1
+
     def test_a_hung_thread_is_named_by_the_watchdog(self) -> None:
         turns = 0
         with pytest.raises(Hung), Watchdog(lambda: turns, 0.2):

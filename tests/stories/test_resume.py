@@ -157,7 +157,7 @@ def test_a_side_effect_that_had_begun_when_the_crash_came_is_not_repeated(folder
     keeper = runner.system.executive.keeper
     assert keeper is not None
 
-    def crash(now_s: float, ticks: int, line: str) -> None:
+    def crash(ticks: int, line: str) -> None:
         raise CutOffError
 
     keeper.after_tick = crash  # type: ignore[method-assign]

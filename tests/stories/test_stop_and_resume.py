@@ -10,11 +10,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
+from py_trees.common import Status
+from py_trees.ports import BehaviourWithPorts, PortInformation
 
-from pluto_bt.blackboard.messages import ActuatorState, MissionState
+from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.runner import make_runner
@@ -126,3 +128,32 @@ def test_a_stop_without_resume_ends_with_the_run_and_the_word_stays(tmp_path: Pa
     run = Stopped(kind, tmp_path, lambda port: port.stop("test"), lambda port: port.mission("abort", "", "", "test"))
     assert (run.result.result, run.result.reason) == ("STOPPED", "stopped")
     assert run.result.exit_code == 1
+
+
+class Clings(BehaviourWithPorts, tag="Clings"):
+    """Works for ever, and raises when it is told to let go."""
+
+    INPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
+    OUTPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
+
+    def update(self) -> Status:
+        return Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:
+        raise RuntimeError("it does not open")
+
+
+def test_a_run_whose_time_is_over_ends_as_such_also_if_a_leaf_raises_while_it_lets_go(tmp_path: Path) -> None:
+    """The robot drives meanwhile, and must come to rest."""
+    path = tmp_path / "m.xml"
+    body = '<Parallel success_count="2"><DriveVelocity speed_mps="0.4"/><Clings/></Parallel>'
+    path.write_text(MISSION.format(body=body), encoding="utf-8")
+    (tmp_path / "hall.xml").write_text(HALL.format(platform="atrv2", x=-4.5), encoding="utf-8")
+    events: list[Event] = []
+    runner = make_runner(
+        read_inputs(Request(str(path), world=str(tmp_path / "hall.xml")), nodes=[Clings]), nodes=[Clings], max_time_s=3.0, on_event=events.append
+    )
+    result = runner.run()
+    assert (result.result, result.reason) == ("STOPPED", "max-time")
+    assert [event.code for event in events if event.level == "error"] == ["max-time", "leaf-error"]
+    assert result.distance_m > 0.5 and runner.system.simulator.velocity == pytest.approx((0.0, 0.0), abs=1e-3)

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any, ClassVar
+
+import pytest
+from py_trees.common import Status
+from py_trees.ports import BehaviourWithPorts, PortInformation
+
 from pluto_bt.runtime import VirtualClock
 from pluto_bt.trees import load_mission
 from pluto_bt.trees.executive import Executive
@@ -27,6 +33,54 @@ class Body:
 def made() -> tuple[Executive, Body]:
     body = Body()
     return Executive(body, lambda level, code, text: None), body
+
+
+class Clings(BehaviourWithPorts, tag="Clings"):
+    """Works for ever, and raises when it is told to let go."""
+
+    INPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
+    OUTPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
+
+    def update(self) -> Status:
+        return Status.RUNNING
+
+    def terminate(self, new_status: Status) -> None:
+        raise RuntimeError("it does not open")
+
+
+@pytest.mark.parametrize("end", ["abort", "preempt", "job", "errand"])
+def test_what_is_ended_is_over_also_if_a_leaf_raises_while_it_lets_go(end: str) -> None:
+    said: list[tuple[str, str, str]] = []
+    body = Body()
+    executive = Executive(body, lambda level, code, text: said.append((level, code, text)))
+    clock = VirtualClock()
+
+    def mission(leaf: str) -> Any:
+        return load_mission(f'<root BTCPP_format="4"><BehaviorTree ID="main"><{leaf}/></BehaviorTree></root>', nodes=[Clings], clock=clock)
+
+    clinging = mission("Clings")
+    if end == "job":
+        executive.start_job(clinging, body)
+    elif end == "errand":
+        executive.start_errand(clinging)
+    else:
+        executive.start(clinging)
+    executive.step(0.0)
+    ended = {"job": executive.job, "errand": executive.errand}.get(end, executive.mission)
+    assert ended is not None and ended.state == "running"
+    if end == "job":
+        executive.end_job("stopped")
+    elif end == "errand":
+        executive.end_errand(ended, "timeout")
+    elif end == "abort":
+        executive.abort("operator")
+    else:
+        executive.start(mission("AlwaysSuccess"))
+    executive.step(0.1)
+    assert ended.state == "aborted" and ended.error is not None and "it does not open" in ended.text
+    assert [(level, code) for level, code, _ in said] == [("error", "leaf-error")]
+    if end == "preempt":
+        assert executive.mission is not None and executive.mission.state == "succeeded", "the next one is not held up by it"
 
 
 def test_an_order_counts_before_it_is_carried_out() -> None:

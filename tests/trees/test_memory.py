@@ -160,3 +160,38 @@ def test_a_long_journal_is_written_anew_and_says_the_same(tmp_path: Any) -> None
     journal.close()
     past = read_journal(path)
     assert past is not None and past.tick == 2999 and len(past.state["nodes"]) == 7 and path.stat().st_size < 1_100_000
+
+
+def test_a_journal_opened_again_keeps_the_keys_of_what_had_only_begun(tmp_path: Any) -> None:
+    """Cut off before its first step was written, twice in a row."""
+    path = tmp_path / "j"
+    journal = Journal(path, Past({"mission": "m"}))
+    journal.write(Line("act", keys=("say#1",)), is_sure=True)
+    journal.close()
+    for _ in range(2):
+        past = read_journal(path)
+        assert past is not None and past.has_begun and list(past.keys) == ["say#1"]
+        Journal(path, past).close()
+
+
+def test_a_key_is_forgotten_when_its_own_beginning_is_counted_and_not_before(tmp_path: Any) -> None:
+    """Two side effects were cut off in one tick; the run that goes on comes to the second one some ticks later."""
+    path = tmp_path / "j"
+    journal = Journal(path, Past({"mission": "m"}))
+    for key in ("first#1", "second#1"):
+        journal.write(Line("act", keys=(key,)), is_sure=True)
+    journal.write(Line("step", begun={"first": 1}, change={"nodes": {"0": ["R", {}]}}), is_sure=True)
+    journal.close()
+    past = read_journal(path)
+    assert past is not None and list(past.keys) == ["second#1"]
+
+
+def test_a_mission_that_ended_is_over_also_if_its_journal_was_written_anew_just_then(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "j"
+    journal = Journal(path, Past({"mission": "m"}))
+    journal.write(Line("step", tick=1, change={"nodes": {"0": ["R", {}]}}), is_sure=True)
+    monkeypatch.setattr("pluto_bt.trees.journal.COMPACT_BYTES", 1)
+    journal.write(Line("end"), is_sure=True)
+    journal.close()
+    past = read_journal(path)
+    assert past is not None and not past.has_begun

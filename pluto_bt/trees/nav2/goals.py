@@ -117,5 +117,3 @@ class GoalUpdater(DecoratorNode):
             return kind.convert(entry.value)
         except PortProblem as problem:
             self.fail(f"entry {key!r}: {problem}")
-
-

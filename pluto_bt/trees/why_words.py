@@ -1,0 +1,52 @@
+"""What the words of the chain speak of when `why` looks for a first cause: which device, how low down it stands, and what mends it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from pluto_bt.behaviours.reasons import REASONS
+from pluto_bt.blackboard.codes import LinkStatus
+from pluto_bt.skills import reasons
+from pluto_bt.skills.reasons import CHAIN_REASONS
+
+ODOMETRY: Final = "ATRV2/Drive/Raw"
+WHEEL_SLIP: Final = "wheel-slip"
+OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
+    reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
+    reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
+    reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
+    reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
+    reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
+    WHEEL_SLIP: ("wheels", ""),
+    "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
+    reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
+}  # fmt: skip
+OF_CODE: Final[dict[int | None, str]] = {
+    LinkStatus.LASER_FATAL: reasons.LASER_FATAL, LinkStatus.LASER_SLOW_STOP: reasons.LASER, LinkStatus.FRONT_BUMPER: reasons.BUMPER,
+    LinkStatus.BACK_BUMPER: reasons.BUMPER, LinkStatus.COMMAND_TIMEOUT: reasons.COMMAND_TIMEOUT,
+}  # fmt: skip
+CURES: Final = {
+    reasons.LASER: "clear the way, or wait until what stands there has gone",
+    reasons.SONAR: "clear the way, or wait until what stands there has gone",
+    WHEEL_SLIP: "look at the ground under the wheels; push the robot, or drive it out by hand",
+    "paused": "`pluto shell resume`",
+}  # fmt: skip
+
+
+def rank(word: str) -> int:
+    """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
+    if word in (reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN, reasons.BUMPER):
+        return 0
+    if word in (reasons.NO_POSE, reasons.LOST, "tilted", "hindered", reasons.OUTSIDE_MAP):
+        return 1
+    return 2 if word in OF_SENSOR else 3
+
+
+def meaning(word: str) -> str:
+    """What a word of OF_SENSOR means, in a sentence."""
+    return CHAIN_REASONS.get(word) or REASONS[word].meaning
+
+
+def cure(word: str) -> str:
+    """What would unblock it; "" if nothing is known."""
+    return REASONS[word].cure if word in REASONS else CURES.get(word, "")

@@ -1,0 +1,33 @@
+"""What avoidance makes of scans: which ones it trusts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.skills import reasons
+from pluto_bt.skills.avoid_parameters import AvoidParameters
+from pluto_bt.skills.outline import outline_of
+from pluto_bt.skills.sight import ScanView, Sight
+from pluto_bt.skills.verdict import ALL_WELL
+from tests.chain.robots import ATRV2
+
+RANGES_M = read_only(3.0 + np.sin(np.arange(181) / 30.0))
+
+
+@pytest.mark.parametrize(
+    ("turned_rad", "is_trusted"),
+    [(0.0, True), (0.02, True), (-0.02, True), (0.05, False), (-0.05, False)],
+)
+@pytest.mark.parametrize("heading_rad", [0.0, math.pi - 0.01, 0.01 - math.pi])
+def test_the_same_scan_again_is_frozen_only_if_the_robot_turned(heading_rad: float, turned_rad: float, is_trusted: bool) -> None:
+    """A heading that steps over +-180 degrees is no turn."""
+    sight = Sight(ATRV2, AvoidParameters(), outline_of(ATRV2.body.outline_m))
+    for stamp_s, theta_rad in ((0.0, heading_rad), (0.2, math.remainder(heading_rad + turned_rad, math.tau))):
+        at = (0.0, 0.0, theta_rad)
+        sight.look(ScanView(LaserScan(stamp_s, -math.pi / 2, math.pi / 180, RANGES_M, 181), at), None, at, True, stamp_s + 0.1)
+    verdict = sight.laser_fault(0.3)
+    assert (verdict == ALL_WELL) == is_trusted and (is_trusted or verdict.reason == reasons.LASER_STALE)
