@@ -40,9 +40,9 @@ class Live(NamedTuple):
         self.process.stdin.flush()
         return json.loads(self.process.stdout.readline())  # type: ignore[no-any-return]
 
-    def client(self, **given: str) -> Client:
+    def client(self, name: str) -> Client:
         """A client of its gateway."""
-        return Client(port=self.port, timeout_s=PATIENCE_S, **given)
+        return Client(port=self.port, timeout_s=PATIENCE_S, name=name)
 
 
 def run() -> Iterator[BenchRow]:
