@@ -11,7 +11,8 @@ import msgspec
 
 from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.messages import Event, LaserScan, Message, MissionState, NodeState, Pose, TreeState
-from pluto_bt.gateway.replies import Cause, LogLine, Why, encode
+from pluto_bt.gateway.encode import encode
+from pluto_bt.gateway.replies import Cause, LogLine, Why
 from pluto_bt.gateway.values import body_of, value_line
 from pluto_bt.gateway.wire import Scenery
 from pluto_bt.maps.load import load_world

@@ -1,7 +1,8 @@
 """A whole robot on patrol in real time, in a process of its own, which tells how punctual its ticks are. For the gateway's benchmarks.
 
 `python -m pluto_bt.bench.live_robot` prints the gateway's port. For each line it reads it prints, as JSON, how late the ticks have been since the
-last line (ms), the gateway's process, the mission's state, and the events so far; it ends with its input.
+last line (ms), the gateway's process, the mission's state, when the base was last told to stand (wall, ns), and the events so far; it ends with
+its input.
 """
 
 from __future__ import annotations
@@ -9,13 +10,14 @@ from __future__ import annotations
 import json
 import sys
 import threading
+from typing import Any
 
 import numpy as np
 
 from pluto_bt.blackboard.messages import Event, MissionState
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.runner import make_runner
-from pluto_bt.runtime.clock import NS
+from pluto_bt.runtime.clock import NS, wall_ns
 
 PERIOD_MS = 100.0
 
@@ -28,12 +30,30 @@ def lateness_ms(ticks_ms: list[float]) -> list[float]:
     return late
 
 
+class Ear:
+    """Hears what the base is told."""
+
+    def __init__(self, base: Any) -> None:
+        self._own = base.drive
+        self._stands = True
+        self.zero_ns = 0
+        base.drive = self._drive
+
+    def _drive(self, speed_mps: float, turn_rate_radps: float) -> None:
+        stands = speed_mps == turn_rate_radps == 0.0
+        if stands and not self._stands:
+            self.zero_ns = wall_ns()
+        self._stands = stands
+        self._own(speed_mps, turn_rate_radps)
+
+
 def main() -> None:
     """Patrol until the input ends."""
     request = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=-1"])
     events: list[Event] = []
     runner = make_runner(read_inputs(request), realtime=True, gateway="127.0.0.1:0", on_event=events.append)
     system = runner.system
+    ear = Ear(system.simulator.devices["base"])
     ticks_ms: list[float] = []
     system.executive.on_ticked = lambda activities, lines: ticks_ms.append(system.clock.now_ns() / (NS / 1000))
     thread = threading.Thread(target=runner.run)
@@ -46,7 +66,7 @@ def main() -> None:
         state = mission.value.state if mission is not None and isinstance(mission.value, MissionState) else ""
         p50, p999, worst = np.percentile(late_ms, [50.0, 99.9, 100.0])
         told = {"ticks": len(late_ms), "p50_ms": p50, "p999_ms": p999, "worst_ms": worst, "pid": gateway.pid, "mission": state}  # type: ignore[attr-defined]
-        print(json.dumps(told | {"events": [event.code for event in events]}), flush=True)
+        print(json.dumps(told | {"zero_ns": ear.zero_ns, "events": [event.code for event in events]}), flush=True)
     runner.loop.interrupt()
     thread.join()
 

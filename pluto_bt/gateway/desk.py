@@ -126,8 +126,7 @@ class Desk:
             case requests.ShowTree():
                 return inquiries.tree(port, request.format)
             case requests.Why():
-                is_moving, causes = port.why(request.at)
-                return replies.Why(is_moving=is_moving, causes=tuple(causes))
+                return inquiries.why(port, request)
             case requests.ShowModules():
                 return replies.Modules(state=port.modules())
             case requests.ModuleOp():
@@ -204,10 +203,7 @@ class Desk:
                 held = self._leases.end(key)
                 if held is None:
                     raise RefusedError("no-lease", "expected the holder of the lease")
-        held = self._leases.held
-        if held is None:
-            return LeaseState(holder="", mine=False, epoch=0, expires_s=0.0)
-        return LeaseState(holder=held.name, mine=held.key == key, epoch=held.epoch, expires_s=max(0.0, held.until_s - now_s))
+        return inquiries.lease(self._leases.held, key, now_s)
 
     def _lost(self, held: Held, why: str, state: str = "cancelled") -> None:
         """Do what the holder asked for when he took the lease."""
@@ -236,15 +232,13 @@ class Desk:
             held = self._leases.held
             if held is not None and held.key != key:
                 raise RefusedError("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
-        if request.op == "list":
-            return replies.Mission(state=port.mission_state(), names=tuple(port.mission_names()))
-        if request.op == "fetch":
-            return replies.Mission(state=port.mission_state(), text=port.mission_text(request.name))
-        if request.op != "state":
-            port.mission(request.op, request.name, request.text, source_of(ask))
+        told = inquiries.mission(port, request)
+        if told is not None:
+            return told
+        port.mission(request.op, request.name, request.text, source_of(ask))
         if request.op in _MOVES:
             self._stop_again(stops, ask)
-        return replies.Mission(state=port.mission_state()) if request.op == "state" else Ok()
+        return Ok()
 
     def _tell(self, key: str, reply: AnyReply) -> None:
         client = self._callers.client_of(key)

@@ -14,10 +14,11 @@ from typing import Any
 import msgspec
 from lxml import etree
 
+from pluto_bt.gateway.child import Child, child_of, text_of
 from pluto_bt.gateway.complaint import complaint
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.opening import OpeningError, opening
-from pluto_bt.gateway.plain import PLAIN_ATTRIBUTES, PLAIN_DEPTH, Child, take
+from pluto_bt.gateway.plain import PLAIN_ATTRIBUTES, PLAIN_DEPTH, take
 
 _SPACE = re.compile(rb"[ \t\r\n]*")
 
@@ -207,8 +208,8 @@ class Framer:
 
     def _complete(self, element: Any) -> Message:
         raw, in_mission = bytes(self._raw), self._in_mission
-        inside = () if in_mission else tuple(_child(one) for one in element if isinstance(one.tag, str))
-        text = "" if in_mission else _text(element)
+        inside = () if in_mission else tuple(child_of(one) for one in element if isinstance(one.tag, str))
+        text = "" if in_mission else text_of(element)
         message = Message(element.tag, dict(element.attrib), inside, text, self._line, self._column, raw)
         self._parser = self._end = None
         self._forget(raw)
@@ -243,12 +244,3 @@ class Framer:
         """An error at the parser's line and column (which begin behind the private root's line), else at the message's begin."""
         line = max(0, line - 2)
         return FramingError(code, text, self._line + line, (column if line else self._column + max(0, column - 1)))
-
-
-def _text(element: Any) -> str:
-    """The text directly inside an element, not in its children; comments are left out."""
-    return (element.text or "") + "".join(child.tail or "" for child in element)
-
-
-def _child(element: Any) -> Child:
-    return Child(element.tag, dict(element.attrib), _text(element), not any(isinstance(one.tag, str) for one in element))

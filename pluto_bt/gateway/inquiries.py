@@ -1,11 +1,12 @@
-"""What the executive answers from the blackboard alone."""
+"""What the executive answers without doing anything."""
 
 from __future__ import annotations
 
 from pluto_bt.blackboard.messages import TreeState
+from pluto_bt.gateway import replies, requests
+from pluto_bt.gateway.leases import Held
 from pluto_bt.gateway.port import RefusedError, RobotPort
-from pluto_bt.gateway.replies import AnyReply, LogLine, Tree, Value
-from pluto_bt.gateway.requests import Log
+from pluto_bt.gateway.replies import AnyReply, LeaseState, LogLine, Mission, Tree, Value
 from pluto_bt.gateway.subscriptions import ALIASES
 from pluto_bt.gateway.wire import pack_value
 from pluto_bt.source import did_you_mean
@@ -38,7 +39,32 @@ def tree(port: RobotPort, format: str) -> Tree:
     return Tree(tick=state.tick, format=format, text=port.tree_text(format))
 
 
-def log(port: RobotPort, request: Log) -> list[AnyReply]:
+def why(port: RobotPort, request: requests.Why) -> replies.Why:
+    """Why the robot moves or not. Raises: RefusedError `out-of-range` for a time that is not known (any more)."""
+    is_moving, causes = port.why(request.at)
+    return replies.Why(is_moving=is_moving, causes=tuple(causes))
+
+
+def mission(port: RobotPort, request: requests.MissionOp) -> Mission | None:
+    """The answer to `state`, `list` and `fetch`; None for what does something. Raises: RefusedError for a mission that is not there."""
+    match request.op:
+        case "state":
+            return Mission(state=port.mission_state())
+        case "list":
+            return Mission(state=port.mission_state(), names=tuple(port.mission_names()))
+        case "fetch":
+            return Mission(state=port.mission_state(), text=port.mission_text(request.name))
+    return None
+
+
+def lease(held: Held | None, key: str, now_s: float) -> LeaseState:
+    """The lease as `key` sees it."""
+    if held is None:
+        return LeaseState(holder="", mine=False, epoch=0, expires_s=0.0)
+    return LeaseState(holder=held.name, mine=held.key == key, epoch=held.epoch, expires_s=max(0.0, held.until_s - now_s))
+
+
+def log(port: RobotPort, request: requests.Log) -> list[AnyReply]:
     """The events that `log` asks for, each with whether a later one has said that it is over."""
     hidden = _LEVELS[: _LEVELS.index(request.level)]
     lines: list[AnyReply] = []

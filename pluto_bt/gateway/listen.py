@@ -11,7 +11,8 @@ from pluto_bt.source.faults import InputError, Place, fail
 
 DEFAULT_PORT = 7500
 WEB_PORT = 7580
-BACKLOG = 1024
+BACKLOG = 128
+"""Callers who wait to be let in. Whoever calls, shouts and hangs up again and again fills it, and every caller behind him waits for all of that."""
 WHAT = {"--gateway": "the gateway", "--web": "the web console"}
 
 

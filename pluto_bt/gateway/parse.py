@@ -9,8 +9,8 @@ from typing import Any
 
 import msgspec
 
+from pluto_bt.gateway.child import Child
 from pluto_bt.gateway.framing import Message
-from pluto_bt.gateway.plain import Child
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.requests import ELEMENTS, AnyRequest, Run, Vector
 from pluto_bt.source import did_you_mean

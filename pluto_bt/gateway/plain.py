@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 
-import msgspec
+from pluto_bt.gateway.child import Child
 
 PLAIN_ATTRIBUTES, PLAIN_DEPTH = 8, 2
 _NAME = r"[A-Za-z_][A-Za-z0-9_.\-]*"
@@ -18,15 +18,6 @@ _CHILD = re.compile(f"<({_NAME})>([ !-%'-;=?-~]*)</\\1>")  # nor with >: the par
 
 
 NO_ATTRIBUTES: dict[str, str] = {}  # of most children; nobody changes it
-
-
-class Child(msgspec.Struct, frozen=True, gc=False):
-    """An element inside a message; `is_leaf`: with text alone inside."""
-
-    tag: str
-    attrib: dict[str, str]
-    text: str
-    is_leaf: bool = True
 
 
 Plain = tuple[str, dict[str, str], tuple[Child, ...], int, int]

@@ -60,7 +60,8 @@ class ExecutiveProtocol(asyncio.Protocol):
         self._done.set()
 
     def _send(self, frame: Up) -> None:
-        self._transport.write(pack(frame))
+        if not self._transport.is_closing():  # clients leave after the executive too, and there is nobody left to tell
+            self._transport.write(pack(frame))
 
 
 async def serve(executive: socket.socket, listener: socket.socket | None, web: socket.socket | None) -> None:

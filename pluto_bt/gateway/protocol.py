@@ -5,11 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
-from pluto_bt.gateway.replies import Error, encode
+from pluto_bt.gateway.replies import Error
 
-_A_STOP = re.compile(rb"<(e?stop)[\s/>]")
+_A_STOP, _AN_ESTOP = re.compile(rb"<stop[\s/>]"), re.compile(rb"<estop[\s/>]")
 _LONGEST_STOP = len(b"<estop")
 STOPS = frozenset({"stop", "estop"})
 """Messages that are heard from anyone, at any time, at any rate."""
@@ -55,13 +56,16 @@ class Connection:
             self.fail(error.code, error.text, line=error.line, column=error.column)
 
     def _stops_in(self, data: bytes) -> Iterator[Message]:
-        """The stops in a flood, found without a parser: it costs nearly nothing, and a stop too many is on the safe side."""
+        """The stops in a flood, found without a parser: it costs nearly nothing, and a stop too many is on the safe side.
+
+        Of each kind one says as much as a thousand.
+        """
         if not self._too_fast:
             return
         seen = self._seen + data
-        for found in _A_STOP.finditer(seen):
-            tag = found[1].decode("ascii")
-            yield Message(tag, {}, (), "", 0, 0, b"<" + found[1] + b"/>")
+        for tag, pattern in (("stop", _A_STOP), ("estop", _AN_ESTOP)):
+            if pattern.search(seen):
+                yield Message(tag, {}, (), "", 0, 0, f"<{tag}/>".encode())
         last = seen.rfind(b"<")
         self._seen = seen[last:] if last >= len(seen) - _LONGEST_STOP and not _A_STOP.match(seen, last) else b""
 
@@ -72,7 +76,6 @@ class Connection:
             self._tokens = min(rate, self._tokens + (now_s - self._refilled_s) * rate)
         self._refilled_s = now_s
         if self._tokens < 1.0:
-            self._too_fast = True
             self.fail("rate-limit", f"expected at most {rate:g} messages a second", line=message.line, column=message.column)
             return False
         self._tokens -= 1.0
@@ -83,6 +86,7 @@ class Connection:
         if not self.closing:
             self._out += encode(Error(id=id, code=code, text=text, line=line, column=column))
             self.closing = True
+            self._too_fast = code == "rate-limit"
 
     def close(self) -> None:
         """No more messages are taken; what waits is still sent."""

@@ -1,4 +1,4 @@
-"""What the server says: one struct a message, the same on the wire between the processes, and its XML line.
+"""What the server says: one struct a message, the same on the wire between the processes; `encode.py` makes its XML line.
 
 `id` is that of the request it answers ("" = it had none). The error codes are those of PROTOCOL.md, section Errors.
 """
@@ -11,7 +11,6 @@ import msgspec
 import msgspec.structs
 
 from pluto_bt.blackboard.messages import Event, MissionState, ModulesState, NodeState
-from pluto_bt.gateway.xml_text import Attribute, element, escape
 
 # fmt: off
 FATAL_CODES = ("not-well-formed", "restricted-xml", "bad-encoding", "too-large", "too-deep", "rate-limit", "slow-consumer", "timeout",
@@ -197,111 +196,3 @@ AnyReply: TypeAlias = (
 def with_id(reply: AnyReply, id: str) -> AnyReply:
     """The same reply to another request."""
     return msgspec.structs.replace(reply, id=id)
-
-
-def row(tag: str, struct: msgspec.Struct, body: str = "") -> str:
-    """A struct as one element, a field an attribute."""
-    fields: dict[str, Attribute] = {name: getattr(struct, name) for name in struct.__struct_fields__}
-    return element(tag, fields, body)
-
-
-def _error(reply: Error) -> str:
-    place: dict[str, Attribute] = {"line": reply.line, "col": reply.column} if reply.line else {}
-    return _with_id(reply, "error", {"code": reply.code, **place, "fatal": reply.fatal}, escape(reply.text))
-
-
-def _with_id(reply: Reply, tag: str, attributes: dict[str, Attribute], body: str = "") -> str:
-    return element(tag, {"id": reply.id, **attributes} if reply.id else attributes, body)
-
-
-def _mission(reply: Mission) -> str:
-    state = reply.state
-    shown: dict[str, Attribute] = {"name": state.name, "run": state.run, "state": state.state, "reason": state.reason, "step": state.step}
-    body = "".join(element("mission", {"name": name}) for name in reply.names)
-    return _with_id(reply, "mission_state", shown, body + (element("document", {}, escape(reply.text)) if reply.text else ""))
-
-
-def _tree(reply: Tree) -> str:
-    body = "".join(row("node", node) for node in reply.nodes) or escape(reply.text)
-    return _with_id(reply, "tree", {"tick": reply.tick, "format": reply.format}, body)
-
-
-def _why(reply: Why) -> str:
-    return _with_id(reply, "why", {"moving": reply.is_moving}, "".join(map(_cause, reply.causes)))
-
-
-def _cause(cause: Cause) -> str:
-    shown: dict[str, Attribute] = {"layer": cause.layer, "code": cause.code, "text": cause.text, "unblock": cause.unblock}
-    return element("cause", {**shown, "since": _seconds(cause.since_s), "age": f"{cause.age_s:.3f}"})
-
-
-def _event(reply: LogLine) -> str:
-    event = reply.event
-    shown: dict[str, Attribute] = {"level": event.level, "code": event.code, "source": event.source, "seq": reply.seq}
-    shown |= {"time": _seconds(event.stamp_s), "cleared": reply.is_cleared}
-    return _with_id(reply, "event", shown, escape(event.text))
-
-
-def _params(reply: ParamsState) -> str:
-    rows = []
-    for one in reply.rows:
-        shown: dict[str, Attribute] = {name: getattr(one, name) for name in one.__struct_fields__ if name != "value"}
-        rows.append(element("p", shown, escape(one.value)))
-    return _with_id(reply, "params", {"rev": reply.rev, "confirm_s": f"{reply.confirm_s:.3f}"}, "".join(rows))
-
-
-def _description(reply: Description) -> str:
-    items = []
-    for item in reply.items:
-        fields = "".join(element("field", dict(field)) for field in item.fields)
-        items.append(element("item", dict(item.attributes), fields + element("doc", {}, escape(item.doc))))
-    return _with_id(reply, "description", {}, "".join(items))
-
-
-def encode(reply: AnyReply) -> bytes:
-    """The reply as one line of XML (`Value` has its own encoder: `values.value_line`)."""
-    return (_text(reply) + "\n").encode()
-
-
-def _text(reply: AnyReply) -> str:  # one case a message: longer than a screen of logic, but a table
-    match reply:
-        case Hello():
-            caps = "".join(element("cap", {}, escape(cap)) for cap in reply.capabilities)
-            shown: dict[str, Attribute] = {"version": "1.0", "robot": reply.robot, "session": reply.session, "time": _seconds(reply.time_s)}
-            return _with_id(reply, "hello", shown, caps)
-        case Pong():
-            return _with_id(reply, "pong", {"t": reply.t, "time": _seconds(reply.time_s)})
-        case Ok():
-            return _with_id(reply, "ok", {}, escape(reply.text))
-        case Error():
-            return _error(reply)
-        case LeaseState():
-            shown = {"holder": reply.holder, "mine": reply.mine, "epoch": reply.epoch, "expires_s": f"{reply.expires_s:.3f}"}
-            return _with_id(reply, "lease_state", shown)
-        case Ack():
-            return _with_id(reply, "ack", {"run": reply.run})
-        case Progress():
-            return _with_id(reply, "progress", {"run": reply.run, "state": reply.state, "text": reply.text})
-        case Result():
-            outs = "".join(element("out", {"name": name}, escape(value)) for name, value in reply.outputs)
-            return _with_id(reply, "result", {"run": reply.run, "state": reply.state, "reason": reply.reason, "text": reply.text}, outs)
-        case Mission():
-            return _mission(reply)
-        case Tree():
-            return _tree(reply)
-        case Modules():
-            return _with_id(reply, "modules", {}, "".join(row("module", module) for module in reply.state.modules))
-        case Why():
-            return _why(reply)
-        case ParamsState():
-            return _params(reply)
-        case LogLine():
-            return _event(reply)
-        case Description():
-            return _description(reply)
-        case Value():
-            raise TypeError("a value is encoded by values.value_line")
-
-
-def _seconds(time_s: float) -> str:
-    return f"{time_s:.6f}"

@@ -11,12 +11,12 @@ from collections.abc import Iterable, Sized
 from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
+from pluto_bt.gateway.listen import BACKLOG
 from pluto_bt.gateway.session import Session
 
 SLICE_BYTES = 4096
 """Bytes of one client that are read before the others have their turn."""
 TICK_S, TICKS_A_SWEEP = 0.05, 10
-BACKLOG = 1024
 HANDSHAKE_S = 3.0
 
 
@@ -43,8 +43,8 @@ class ClientProtocol(asyncio.Protocol):
         hub = self._server.hub
         _keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
         self._session = hub.open(self._loop.time())
-        if len(self._server.clients) >= 2 * hub.limits.clients:  # so many that not even the error can be said to all
-            self._transport.abort()
+        if len(self._server.clients) >= 2 * hub.limits.clients and not self._server.let_one_go():
+            self._transport.abort()  # so many that not even the error can be said to all
             return
         self._session.peer = ":".join(map(str, (self._transport.get_extra_info("peername") or ())[:2]))
         self._session.known_as(hub.access.by_certificate(common_name(self._transport)))
@@ -95,6 +95,13 @@ class ClientProtocol(asyncio.Protocol):
         self._server.hub.close(self._session)
 
     # our own -----------------------------------------------------------------------------------------------------
+    def let_go(self) -> bool:
+        """Give up a client who has been told that it is over and lingers on; False for any other."""
+        if not self._is_ending or self._transport.is_closing():
+            return False
+        self._transport.abort()
+        return True
+
     def _discard(self, data: bytes) -> None:
         """What comes after the end: only a stop in a flood is still heard. Who goes on and on is not read any more."""
         self._session.receive(data, self._loop.time())
@@ -210,6 +217,10 @@ class Server:
         """Tell everybody that it is over."""
         self.hub.shut()
         self.flush(tuple(self.clients))
+
+    def let_one_go(self) -> bool:
+        """Make room for a newcomer, who may be an operator, among those who linger; False if nobody does."""
+        return any(isinstance(client, ClientProtocol) and client.let_go() for client in self.clients.values())
 
     def _tick(self) -> None:
         now_s = self.loop.time()

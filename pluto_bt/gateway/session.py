@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING
 
 from pluto_bt.gateway import requests
 from pluto_bt.gateway.access import SCOPES, Key, may, scope_of, shown_scopes
+from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.framing import Message
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.parse import parse
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
-from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, encode, with_id
+from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, with_id
 from pluto_bt.gateway.requests import AnyRequest, Estop, Stop
 from pluto_bt.gateway.stops import Stops
 from pluto_bt.gateway.subscriptions import ALIASES, Subscriptions

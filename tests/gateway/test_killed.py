@@ -15,8 +15,6 @@ import pytest
 from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.runtime.clock import NS, wall_ns
 
-BACK_S = 6.0  # 2 s on a machine that has nothing else to do (pluto bench gateway)
-
 
 class Live:
     """A patrol in a process of its own."""
@@ -37,15 +35,15 @@ class Live:
     def client(self, **given: str) -> Client:
         return Client(port=self.port, timeout_s=20.0, **given)
 
-    def kill_gateway(self) -> float:
-        """SIGKILL; seconds until a new client is answered."""
+    def kill_gateway(self) -> None:
+        """SIGKILL, and wait until a new client is answered (how long that takes: `pluto bench gateway`)."""
         os.kill(int(self.tells()["pid"]), signal.SIGKILL)
         begun_ns = wall_ns()
         while wall_ns() - begun_ns < 30 * NS:
             try:
                 with self.client() as client:
                     client.request("ping")
-                return (wall_ns() - begun_ns) / NS
+                return
             except GatewayError:
                 continue
         raise AssertionError("it never came back")
@@ -78,7 +76,7 @@ def let_it_run(live: Live) -> None:
 
 def test_a_mission_without_a_lease_does_not_notice(live: Live) -> None:
     let_it_run(live)
-    assert live.kill_gateway() < BACK_S
+    live.kill_gateway()
     told = live.tells()
     assert told["mission"] == "running" and {"gateway-lost", "gateway-restarted"} <= set(told["events"])
 
@@ -88,7 +86,7 @@ def test_a_lease_keeps_its_word(live: Live, session: str, on_loss: str, state: s
     let_it_run(live)
     with live.client(name="anna", session=session) as holder:
         holder.lease("acquire", ttl_s=30, on_loss=on_loss)
-        assert live.kill_gateway() < BACK_S
+        live.kill_gateway()
     with live.client(name="anna", session=session) as again:
         until(again, state)
         held = again.lease("query")

@@ -5,17 +5,25 @@ from __future__ import annotations
 import os
 import signal
 import socket
+import subprocess
+import sys
 import threading
+from pathlib import Path
 
 import pytest
 
 from pluto_bt.blackboard import messages as m
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.gateway.errors import TurnedAwayError
+from pluto_bt.gateway.exchange import Exchange
+from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.listen import Address, open_listener, parse_address
+from pluto_bt.gateway.wire import pack
 from pluto_bt.source import InputError
 
 from .conftest import Running
+from .robot import FakeRobot
 
 WAIT_S = 20.0
 
@@ -136,6 +144,24 @@ def test_the_end_of_the_run_is_told_to_all(running: Running) -> None:
         with pytest.raises(TurnedAwayError) as error:
             client.receive(WAIT_S)
     assert error.value.code == "shutdown"
+
+
+def test_an_executive_who_is_gone_without_a_word_is_mourned_in_silence(tmp_path: Path) -> None:
+    ours, theirs = socket.socketpair()
+    with open_listener(Address("127.0.0.1", 0)) as listener, (tmp_path / "told").open("w") as told:
+        words = [sys.executable, "-c", "from pluto_bt.gateway.process import main; main()", str(theirs.fileno()), str(listener.fileno()), "-1"]
+        process = subprocess.Popen(words, pass_fds=(theirs.fileno(), listener.fileno()), stderr=told)
+        theirs.close()
+        ours.sendall(pack(Exchange(FakeRobot(), lambda frame: None).welcome(Access(), Limits(linger_s=0.3), 1)))
+        with Client(*listener.getsockname(), timeout_s=WAIT_S, backoff=None, name="x") as client:
+            client.subscribe("Localization/Pose")
+            client.send("get", topic="sick/scan")
+            ours.close()
+            with pytest.raises(GatewayError):
+                while True:
+                    client.receive(WAIT_S)
+        assert process.wait(WAIT_S) == 0
+    assert (tmp_path / "told").read_text() == ""
 
 
 def test_a_client_without_a_gateway_is_told_so() -> None:

@@ -17,6 +17,7 @@ from pluto_bt.blackboard import messages as m
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway import replies, wire
 from pluto_bt.gateway.describe import describe
+from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.read_values import message_of
 from pluto_bt.gateway.requests import Describe
 from pluto_bt.gateway.values import body_of, fields_of, value_line
@@ -120,7 +121,7 @@ EVERY_REPLY: list[replies.AnyReply] = [
 
 @pytest.mark.parametrize("reply", EVERY_REPLY, ids=lambda reply: type(reply).__name__)
 def test_every_reply_is_one_line_that_validates(reply: replies.AnyReply) -> None:
-    read(replies.encode(reply))
+    read(encode(reply))
 
 
 def test_the_table_of_replies_is_complete() -> None:

@@ -26,7 +26,7 @@ class GrootClient:
     def __init__(self, port: int, host: str = "127.0.0.1") -> None:
         self._context = zmq.Context()
         self._socket = self._context.socket(zmq.REQ)
-        self._socket.setsockopt(zmq.RCVTIMEO, 20_000)
+        self._socket.setsockopt(zmq.RCVTIMEO, 120_000)  # a busy machine may take so long to begin a run
         self._socket.setsockopt(zmq.LINGER, 0)
         self._socket.connect(f"tcp://{host}:{port}")
         self._number = 0x01020300

@@ -14,14 +14,17 @@ from pathlib import Path
 import pytest
 
 MISSION = """<root BTCPP_format="4"><BehaviorTree ID="m"><Sequence name="all of it">
-  <Sleep name="wait" msec="1500"/><Say name="greet" text="there"/><Sleep name="rest" msec="1500"/></Sequence></BehaviorTree></root>"""
+  <Sleep name="wait" msec="{0}"/><Say name="greet" text="there"/><Sleep name="rest" msec="{0}"/></Sequence></BehaviorTree></root>"""
+SHORT_MS, LONG_MS = 1500, 300_000
+"""Five minutes of the robot's time are a second of ours at the least: either wait is drawn, however busy the machine is, or idle."""
 LONG_S = 60.0
 
 
 @pytest.fixture
 def at_a_terminal(tmp_path: Path) -> Callable[..., tuple[str, int]]:
     """Runs `pluto …` and answers questions; gives all that the screen was told, and the exit code."""
-    (tmp_path / "m.xml").write_text(MISSION, encoding="utf-8")
+    (tmp_path / "m.xml").write_text(MISSION.format(SHORT_MS), encoding="utf-8")
+    (tmp_path / "long.xml").write_text(MISSION.format(LONG_MS), encoding="utf-8")
 
     def run(*words: str, answer: str = "") -> tuple[str, int]:
         ours, theirs = pty.openpty()
@@ -45,7 +48,7 @@ def at_a_terminal(tmp_path: Path) -> Callable[..., tuple[str, int]]:
 
 
 def test_the_live_tree_is_drawn_over_itself_and_the_summary_stays(at_a_terminal: Callable[..., tuple[str, int]]) -> None:
-    text, code = at_a_terminal("run", "m.xml", "--watch")
+    text, code = at_a_terminal("run", "long.xml", "--watch")
     assert code == 0
     assert "\x1b[1A" in text, "the lines of the moment before are taken back"
     assert re.search(r"● Sleep “wait”.*RUNNING", text) and re.search(r"✓ Say “greet”", text)

@@ -1,4 +1,4 @@
-"""Clients who mean harm, in a process of their own: `python attacker.py ATTACK PORT SECONDS`. Standard library only.
+"""Clients who mean harm, in a process of their own: `python -m pluto_bt.bench.attacker ATTACK PORT SECONDS`. For the gateway's tests and benchmarks.
 
 Each attack goes on for so long, beginning anew when it is cut off; at the end it prints one JSON line: how often it was cut off, the codes it was
 told, the most bytes that one connection took, and the longest time until it was cut off.
@@ -10,14 +10,28 @@ import contextlib
 import hashlib
 import json
 import socket
+import subprocess
 import sys
-import time
+import threading
 from collections.abc import Callable, Iterator
+
+from pluto_bt.runtime.clock import NS, wait, wall_ns
 
 CHUNK = 64 * 1024
 GIGABYTE = 1 << 30
 BOMB = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10 if i else "lol"}">' for i in range(10))
-UNTIL = [0.0]
+UNTIL_S = [0.0]
+
+
+def begin(attack: str, port: int, seconds: float) -> subprocess.Popen[str]:
+    """An attack in a process of its own; what it prints at its end is one line of JSON."""
+    command = [sys.executable, "-m", "pluto_bt.bench.attacker", attack, str(port), str(seconds)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+def now_s() -> float:
+    """Of the wall."""
+    return wall_ns() / NS
 
 
 def endless(head: bytes, filler: bytes, tail: bytes = b"") -> Callable[[], Iterator[bytes]]:
@@ -71,8 +85,8 @@ def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]
     """Send a stream again and again."""
     cuts, most, longest_s = 0, 0, 0.0
     codes: set[str] = set()
-    while time.monotonic() < UNTIL[0] or not cuts:
-        begun_s, sent, heard = time.monotonic(), 0, b""
+    while now_s() < UNTIL_S[0] or not cuts:
+        begun_s, sent, heard = now_s(), 0, b""
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=10.0) as connection:
             try:
                 for chunk in stream():
@@ -84,7 +98,7 @@ def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]
             with contextlib.suppress(OSError):
                 while data := connection.recv(CHUNK):
                     heard += data
-        cuts, most, longest_s = cuts + 1, max(most, sent), max(longest_s, time.monotonic() - begun_s)
+        cuts, most, longest_s = cuts + 1, max(most, sent), max(longest_s, now_s() - begun_s)
         codes |= {word.split(b'"')[0].decode() for word in heard.split(b'code="')[1:]}
     return {"cuts": cuts, "codes": sorted(codes), "most_bytes": most, "longest_s": round(longest_s, 2)}
 
@@ -92,7 +106,7 @@ def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]
 def crowd(port: int, count: int, each: Callable[[socket.socket], None]) -> dict[str, object]:
     """So many connections at once; `each` is done with every one of them again and again."""
     connections: list[socket.socket] = []
-    while time.monotonic() < UNTIL[0]:
+    while now_s() < UNTIL_S[0]:
         while len(connections) < count:
             with contextlib.suppress(OSError):
                 connections.append(socket.create_connection(("127.0.0.1", port), timeout=5.0))
@@ -104,8 +118,13 @@ def crowd(port: int, count: int, each: Callable[[socket.socket], None]) -> dict[
                 pass
             except OSError:
                 connections.remove(connection)
-        time.sleep(0.02)
+        wait(threading.Event(), 0.02)
     return {"cuts": 0, "codes": [], "most_bytes": 0, "longest_s": 0.0}
+
+
+def one_more_byte(connection: socket.socket) -> None:
+    """Of a message that never ends."""
+    connection.send(b"<")
 
 
 def never_read(connection: socket.socket) -> None:
@@ -116,7 +135,7 @@ def never_read(connection: socket.socket) -> None:
 def storm(port: int) -> dict[str, object]:
     """Connect and go, as fast as can be."""
     cuts = 0
-    while time.monotonic() < UNTIL[0]:
+    while now_s() < UNTIL_S[0]:
         with contextlib.suppress(OSError):
             socket.create_connection(("127.0.0.1", port), timeout=5.0).close()
             cuts += 1
@@ -125,13 +144,13 @@ def storm(port: int) -> dict[str, object]:
 
 def burn(port: int) -> dict[str, object]:
     """No attack: a program that only needs the processor."""
-    while time.monotonic() < UNTIL[0]:
+    while now_s() < UNTIL_S[0]:
         hashlib.sha256(bytes(CHUNK)).digest()
     return {}
 
 
 CROWDS: dict[str, tuple[int, Callable[[socket.socket], None]]] = {
-    "slowloris": (40, lambda connection: connection.send(b"<") if connection.getpeername() else 0),
+    "slowloris": (40, one_more_byte),
     "half-open": (60, lambda connection: None),
     "200-connections": (200, lambda connection: None),
     "never-read": (8, never_read),
@@ -141,7 +160,7 @@ CROWDS: dict[str, tuple[int, Callable[[socket.socket], None]]] = {
 def main() -> None:
     """One attack."""
     name, port = sys.argv[1], int(sys.argv[2])
-    UNTIL[0] = time.monotonic() + float(sys.argv[3])
+    UNTIL_S[0] = now_s() + float(sys.argv[3])
     if name in STREAMS:
         told = shout(STREAMS[name], port)
     elif name in CROWDS:
