@@ -27,6 +27,7 @@ from pluto_bt.gateway.audit import default_path
 from pluto_bt.gateway.listen import Address, is_free, parse_address
 from pluto_bt.gateway.ssh_link import SshRequest
 from pluto_bt.loop import Loop, rehearse
+from pluto_bt.maps.kernel import telling_of_compilation
 from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
@@ -51,7 +52,8 @@ class Runner:
         quiet = replace(
             options, trace_path=None, has_gateway=False, web=None, groot=None, ssh=None, record=None, own_clock=None, on_event=lambda event: None
         )
-        rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
+        with telling_of_compilation(options.on_compiling):
+            rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
             clock.restart()
         self.system = System(options, clock)
@@ -157,6 +159,7 @@ def make_runner(
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
+    on_compiling: Callable[[], None] = lambda: None,
 ) -> Runner:
     """Load the mission, which `read_inputs` has checked, then make the robot around it.
 
@@ -188,6 +191,7 @@ def make_runner(
         gateway=parse_address(gateway) if gateway is not None else None, gateway_access=gateway_access,
         gateway_audit=Path(gateway_audit) if gateway_audit else default_path(), web=web_address(web) if web is not None else None,
         groot=groot_address(groot) if groot is not None else None, ssh=ssh, load=load, on_event=on_event, on_progress=on_progress,
+        on_compiling=on_compiling,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip
     runner = Runner(inputs, mission, clock, options)

@@ -103,6 +103,7 @@ class Options:
     load: Callable[..., Mission] = load_mission
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
+    on_compiling: Callable[[], None] = lambda: None  # told before the run, if kernels must be compiled first
 
     @property
     def takes_orders(self) -> bool:
@@ -160,7 +161,7 @@ class System:
                 _, _, name = source.rpartition("inbox:")
                 wake = self.scheduler.waker(part.row)
                 if "inbox:" in source:
-                    self.inboxes[name].on_post(wake)
+                    self.inboxes[name].on_post(wake, self.scheduler.waker(part.row, for_stop=True))
                 else:
                     self.board.on_change(source, wake)
         for topic in self.board.topics:
@@ -229,7 +230,7 @@ class System:
             if need in self._parts and not self._parts[need].is_running:
                 self.order_module(need, True)
         part.order(run)
-        self.scheduler.waker(part.row)()
+        self.scheduler.waker(part.row, for_stop=not run)()
 
     def tune(self, robot: RobotFile) -> None:
         """Other parameters: each module takes them between two steps, what is made later begins with them. Thread-safe."""

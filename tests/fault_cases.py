@@ -68,6 +68,7 @@ CASES: tuple[FaultCase, ...] = (
     FaultCase("sonar stuck at 0", fault("sonar", "stuck", 'value="0"'), "FAILURE stuck", 0.5, "sonar",
               "drive: an echo at the skin on all sides; goto gives up"),
     FaultCase("bumper stuck", fault("bumpers", "stuck", 'value="1"'), "FAILURE bumper", 0.1, "bumper", "every link, at once"),
+    FaultCase("bumpers off", fault("bumpers", "off"), "FAILURE bumper-stale", 0.5, "bumper-stale", "stop filter and drive, by their age"),
     FaultCase("odometry frozen: old readings", fault("odometry", "frozen"), "FAILURE no-pose", 0.5, "no-pose",
               "stop filter and drive, by its age", first="odometry-stale"),
     FaultCase("odometry stuck: new stamps, old counts", fault("odometry", "stuck"), "FAILURE odometry-frozen", 0.5, "odometry-frozen",

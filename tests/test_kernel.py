@@ -67,6 +67,15 @@ def test_a_change_in_a_called_module_is_noticed_by_the_cache(tmp_path):
     assert python(tmp_path, ask) == "201 0"
 
 
+def test_compilation_is_told_once_and_not_where_the_cache_has_it(tmp_path):
+    head = "from pluto_bt.maps.kernel import kernel\n"
+    (tmp_path / "cold.py").write_text(head + "@kernel\ndef f(x):\n    return x + 1\n@kernel\ndef g(x):\n    return f(x)\n")
+    imports = "from pluto_bt.maps.kernel import telling_of_compilation as telling\nfrom cold import f, g\n"
+    ask = imports + "with telling(lambda: print('cold')):\n    print(f(1), g(1))"
+    assert python(tmp_path, ask) == "cold\n2 2"
+    assert python(tmp_path, ask) == "2 2"
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_kernel_works_where_nothing_can_be_written(tmp_path):
     (tmp_path / "lonely.py").write_text("from pluto_bt.maps.kernel import kernel\n@kernel\ndef f(x):\n    return x + 1\n")

@@ -21,7 +21,7 @@ from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
 # a sensor on the brink is well for a moment now and then, and held wheels try again every second: these words must stay away for CLEAR_S
-FLICKERING: Final = ("laser-stale", "sonar-stale", "odometry-stale", "odometry-frozen", "no-pose")
+FLICKERING: Final = ("laser-stale", "sonar-stale", "bumper-stale", "odometry-stale", "odometry-frozen", "no-pose")
 CLEAR_S: Final = 2.0
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 

@@ -29,6 +29,7 @@ REASONS: Final[dict[str, Reason]] = {
     # of leaves
     "bad-command": Reason("a link of the chain refused the command", "see the status text of motion, avoidance and drive"),
     "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),
+    "bumper-stale": Reason("the bumpers deliver nothing any more", "check the bumpers and their cable"),
     "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
     "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid and drive"),
     "command-timeout": Reason("drive had no new command for 4 s and stopped", "send commands more often, or use a leaf that refreshes its command"),
@@ -66,6 +67,7 @@ REASONS: Final[dict[str, Reason]] = {
 WAITING: Final[dict[str, float]] = {
     # word → seconds for which a motion leaf lets the chain wait before it fails with that word
     "bumper": 4.0,  # who bumped into the robot goes on
+    "bumper-stale": 5.0,
     "laser-fatal": 30.0,  # the reboot takes about 20 s
     "laser-stale": 5.0,
     "sonar-stale": 5.0,

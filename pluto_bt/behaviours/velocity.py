@@ -10,8 +10,8 @@ from py_trees.common import Status
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.way_driven import WayDriven
 from pluto_bt.blackboard.codes import CommandType
-from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills.limits import clamp
 
 REFRESH_S: Final = 1.0
@@ -31,7 +31,7 @@ class RefreshedLeaf(MotionLeaf):
     def begin(self, robot: Robot) -> Status | None:
         """First post. A duration of 0 is over before anything moves."""
         self._duration_s, self._distance_m = self.ends()
-        self._from_m = _driven_m(robot)
+        self._way = WayDriven(robot)
         self._sent_s = self.elapsed_s
         if self._duration_s <= 0.0 or self._distance_m <= 0.0:
             return self.succeed("nothing to drive")
@@ -48,21 +48,13 @@ class RefreshedLeaf(MotionLeaf):
         trouble = self.chain_trouble(robot, self.chain_status(robot))
         if trouble is not None:
             return trouble
-        driven_m = _driven_m(robot)
-        if self._from_m is None:
-            self._from_m = driven_m
-        way_m = 0.0 if driven_m is None or self._from_m is None else abs(driven_m - self._from_m)
+        way_m = abs(self._way.step(robot))
         if way_m >= self._distance_m or self.elapsed_s >= self._duration_s - 1e-6:
             return self.succeed(f"{way_m:.2f} m driven")
         if self.elapsed_s - self._sent_s >= REFRESH_S - 1e-6:
             self._sent_s = self.elapsed_s
             self.send(robot)
         return self.wait(f"{way_m:.2f} m driven")
-
-
-def _driven_m(robot: Robot) -> float | None:
-    raw = robot.newest("ATRV2/Drive/Raw")
-    return raw.position[0] if isinstance(raw, ActuatorState) else None
 
 
 ENDS: Final = {

@@ -10,8 +10,8 @@ from py_trees.common import Status
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.way_driven import WayDriven
 from pluto_bt.blackboard.codes import CommandType
-from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills.wall_follow import AT_WALL
 
 SIDES: Final = {"left": 1.0, "right": -1.0}
@@ -42,6 +42,7 @@ class WallFollow(MotionLeaf):
             return self.fail("no-device", "the platform has neither laser nor sonar")
         self._side = SIDES[self.get_input("side")]
         self._length_m, self._from_m, self._way_m = float(self.get_input("length_m")), math.inf, 0.0
+        self._way = WayDriven(robot)
         self._at_m, self._came_s, self._glances = math.inf, self.now_s(), False
         velocity = (self.max_speed_mps(robot), math.radians(robot.platform.limits.max_turn_rate_dps))
         self.post(robot, CommandType.WALL_FOLLOW, velocity=velocity, force=(0.0, float(self.get_input("distance_m")), self._side))
@@ -58,12 +59,11 @@ class WallFollow(MotionLeaf):
             return self.wait("starting")
         if status.reason == "stuck":
             return self.fail("stuck", status.text)
-        raw = robot.newest("ATRV2/Drive/Raw")
-        if isinstance(raw, ActuatorState):
-            if self._from_m == math.inf and status.text == AT_WALL:
-                self._from_m = raw.position[0]
-            self._way_m = max(self._way_m, raw.position[0] - self._from_m)
-            self._glance(robot, raw.position[0])
+        driven_m = self._way.step(robot)
+        if self._from_m == math.inf and status.text == AT_WALL:
+            self._from_m = driven_m
+        self._way_m = max(self._way_m, driven_m - self._from_m)
+        self._glance(robot, driven_m)
         if self._way_m >= self._length_m:
             return self.succeed(f"{self._way_m:.2f} m along the wall")
         return self.wait(f"{self._way_m:.2f} m along the wall")
@@ -81,10 +81,10 @@ class WallFollow(MotionLeaf):
         if moved and robot is not None:
             self._point(robot, 0.0)
 
-    def _glance(self, robot: Robot, odometer_m: float) -> None:
+    def _glance(self, robot: Robot, driven_m: float) -> None:
         """Held for a while, look ahead, and back at the wall, until there is headway."""
-        if abs(odometer_m - self._at_m) > HEADWAY_M:
-            self._at_m, self._came_s = odometer_m, self._last_s
+        if abs(driven_m - self._at_m) > HEADWAY_M:
+            self._at_m, self._came_s = driven_m, self._last_s
         glances = (self._last_s - self._came_s) % (HELD_S + GLANCE_S) > HELD_S
         if glances != self._glances:
             self._glances = glances

@@ -31,6 +31,7 @@ class Inbox:
         self.name = name
         self.is_owner = is_owner
         self._wakers: tuple[Callable[[], None], ...] = ()
+        self._stop_wakers: tuple[Callable[[], None], ...] = ()
         self._letter: Letter | None = None
         self._lock = threading.Lock()
 
@@ -41,14 +42,16 @@ class Inbox:
                 return WRONG_STATE
             if self._letter is None or not self._letter.is_stop:
                 self._letter = Letter(source, command, False)
-        self._wake()
+        for wake in self._wakers:
+            wake()
         return ""
 
     def stop(self, source: str, stamp_s: float) -> None:
         """Zero velocity at once, whoever asks; a command that waits is dropped."""
         with self._lock:
             self._letter = Letter(source, ActuatorState(stamp_s), True)
-        self._wake()
+        for wake in self._stop_wakers:
+            wake()
 
     def take(self) -> Letter | None:
         """The newest letter, once."""
@@ -58,10 +61,7 @@ class Inbox:
             letter, self._letter = self._letter, None
         return letter
 
-    def on_post(self, wake: Callable[[], None]) -> None:
-        """Call `wake` after each letter, in the sender's thread; it must be quick and must not raise."""
+    def on_post(self, wake: Callable[[], None], wake_for_stop: Callable[[], None] | None = None) -> None:
+        """Call `wake` after each letter, for a stop `wake_for_stop` if it is given, in the sender's thread; both must be quick and must not raise."""
         self._wakers = (*self._wakers, wake)
-
-    def _wake(self) -> None:
-        for wake in self._wakers:
-            wake()
+        self._stop_wakers = (*self._stop_wakers, wake_for_stop or wake)

@@ -62,6 +62,10 @@ def _confirm(question: str) -> bool:
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
+def _tell_of_compilation() -> None:
+    print("compiling kernels: once after an installation or an update, up to a minute", file=sys.stderr, flush=True)
+
+
 def _resume(args: argparse.Namespace) -> ResumeRequest | None:
     from pluto_bt.resume import ResumeRequest
 
@@ -99,7 +103,7 @@ def _run(args: argparse.Namespace) -> RunResult:
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
         resume=_resume(args), gateway=args.gateway, gateway_access=access, gateway_audit=args.gateway_audit, web=args.web,
-        groot=args.groot, ssh=ssh, on_event=progress.event, on_progress=progress.show,
+        groot=args.groot, ssh=ssh, on_event=progress.event, on_progress=progress.show, on_compiling=_tell_of_compilation,
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

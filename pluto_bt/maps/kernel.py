@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FunctionType
 from typing import Any, Generic, ParamSpec, TypeVar, cast
@@ -79,6 +80,26 @@ def kernel(function: Callable[P, R]) -> Kernel[P, R]:
 def inline_kernel(function: Callable[P, R]) -> Kernel[P, R]:
     """A kernel that is pasted into the kernels that call it: for the body of a hot loop, where a call with arrays costs 10 ns."""
     return Kernel(function, inline=True)
+
+
+@contextmanager
+def telling_of_compilation(tell: Callable[[], None]) -> Iterator[None]:
+    """Call `tell` once, just before the first kernel is compiled in here; never if all of them lie in the cache."""
+    from numba.core import event
+
+    class FirstCompilation(event.Listener):
+        is_told = False
+
+        def on_start(self, _: object) -> None:
+            if not self.is_told:
+                self.is_told = True
+                tell()
+
+        def on_end(self, _: object) -> None:
+            """Of no interest."""
+
+    with event.install_listener("numba:compile", FirstCompilation()):
+        yield
 
 
 def _dispatcher(function: FunctionType, inline: bool, stamps: tuple[tuple[str, int, int], ...]) -> Any:

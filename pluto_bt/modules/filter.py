@@ -106,7 +106,7 @@ class Filter:
         self._find_scan()
         self._find_sonar(dead)
         return FilterSenses(
-            self._raw(), None if dead is None else (dead.stamp_s, _planar(dead)), None if pose is None else _planar(pose),
+            self._raw(), None if dead is None else (dead.stamp_s, _planar(dead)), None if pose is None else (pose.stamp_s, _planar(pose)),
             self._scan, *self._laser, self._sonar, self._sonar_at, self._bumper(), self._context.silent_s("executive"),
         )  # fmt: skip
 

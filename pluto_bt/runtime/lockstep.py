@@ -11,7 +11,7 @@ from heapq import heappop, heappush, heapreplace
 from pluto_bt.runtime.clock import VirtualClock
 from pluto_bt.runtime.supervision import Part, Waker
 
-WAKES_AT_ONE_TIME = 16  # two parts that wake each other must not hold the clock
+WAKES_AT_ONE_TIME = 16  # two parts that wake each other must not hold the clock; who is left out waits for his period, but for a stop
 
 
 class Lockstep:
@@ -33,11 +33,14 @@ class Lockstep:
             if part.period_ns:
                 heappush(self._due, (now_ns, row, False))
 
-    def waker(self, row: int) -> Waker:
-        """What to call so that the part of this row steps now."""
+    def waker(self, row: int, *, for_stop: bool = False) -> Waker:
+        """What to call so that the part of this row steps now; `for_stop`: however many have been woken at this moment.
+
+        Stops only travel down the chain, so they cannot hold the clock.
+        """
 
         def wake() -> None:
-            if not self._is_woken[row] and self._wakes_now < WAKES_AT_ONE_TIME:
+            if not self._is_woken[row] and (for_stop or self._wakes_now < WAKES_AT_ONE_TIME):
                 self._is_woken[row] = True
                 self._wakes_now += 1
                 heappush(self._due, (self._clock.now_ns(), row, True))

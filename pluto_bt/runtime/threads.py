@@ -85,8 +85,8 @@ class Threads:
         for group in self._groups.values():
             group.start()
 
-    def waker(self, row: int) -> Waker:
-        """What to call so that the part of this row steps as soon as its thread is free."""
+    def waker(self, row: int, *, for_stop: bool = False) -> Waker:
+        """What to call so that the part of this row steps as soon as its thread is free; here a stop is no faster than a command."""
         part = self.parts[row]
         group = self._groups[part.module.group]
         index = group.parts.index(part)

@@ -35,6 +35,7 @@ class DriveParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_
     deceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets slower")] = 0.0
     timeout_s: Annotated[Positive, Meta(description="without a new command for so long the robot makes a controlled stop")] = 4.0
     odometry_stale_s: Annotated[Positive, Meta(description="older odometry means zero velocity")] = 0.3
+    bumper_stale_s: Annotated[Positive, Meta(description="older bumper readings mean zero velocity")] = 0.5
     sonar_stale_s: Annotated[Positive, Meta(description="older echoes mean zero velocity while sonar protection is asked for")] = 0.5
     sonar_margin_m: Annotated[NotNegative, Meta(description="distance that sonar protection keeps from the outline")] = 0.08
     sonar_look_m: Annotated[Positive, Meta(description="echoes farther than this do not matter")] = 2.5
@@ -79,6 +80,7 @@ class Drive:
         self._ring = SonarRing(platform.devices.sonar, self._outline) if platform.devices.sonar else None
         self._echoes: Array | None = None
         self._heard: SonarState | None = None
+        self._has_bumpers = platform.devices.bumpers is not None
         self._latch = BumperLatch()
         self._line = Line()
         self.reset()
@@ -148,6 +150,8 @@ class Drive:
         raw = senses.raw
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
             return STILL, True, Verdict(reason=reasons.ODOMETRY_STALE, text=f"no odometry for more than {p.odometry_stale_s:g} s")
+        if self._has_bumpers and (senses.bumper is None or now_s - senses.bumper.stamp_s > p.bumper_stale_s):
+            return STILL, True, Verdict(reason=reasons.BUMPER_STALE, text=f"no bumper reading for more than {p.bumper_stale_s:g} s")
         if now_s - self._since_s >= p.timeout_s:
             text = f"no new command for {p.timeout_s:g} s"
             return STILL, False, Verdict(LinkStatus.COMMAND_TIMEOUT, reasons.COMMAND_TIMEOUT, text)

@@ -21,14 +21,15 @@ from pluto_bt.skills.walkers import ANYWHERE, WalkerWatch
 
 
 class FilterSenses(NamedTuple):
-    """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3; `age_s`: of the executive's last step.
+    """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3, each with its stamp.
 
-    `laser` and `tilt_rad`: where `scan` was taken from, in the frame of dead reckoning; `sonar_at`: where the robot was when `sonar` listened.
+    `laser` and `tilt_rad`: where `scan` was taken from, in the frame of dead reckoning; `sonar_at`: where the robot was when `sonar` listened;
+    `executive_age_s`: seconds since the executive's last step.
     """
 
     raw: ActuatorState | None
     pose: tuple[float, Planar] | None
-    pose_map: Planar | None = None
+    pose_map: tuple[float, Planar] | None = None
     scan: LaserScan | None = None
     laser: Planar | None = None
     tilt_rad: float = 0.0

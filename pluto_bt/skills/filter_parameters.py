@@ -30,6 +30,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     without_laser_mps: Annotated[NotNegative, Meta(description="speed while the laser cannot be trusted")] = 0.0
     sonar_stale_s: Annotated[Positive, Meta(description="older echoes do not count")] = 0.35
     without_sonar_mps: Annotated[NotNegative, Meta(description="speed while the sonar cannot be trusted")] = 0.3
+    bumper_stale_s: Annotated[Positive, Meta(description="older bumper readings mean zero velocity")] = 0.35
     odometry_stale_s: Annotated[Positive, Meta(description="older odometry, or an older pose, means zero velocity")] = 0.25
     wheels_still_s: Annotated[Positive, Meta(description="wheels told to turn whose encoders stand still so long are stopped")] = 0.3
     retry_s: Annotated[Positive, Meta(description="after so long at rest the wheels may try again")] = 1.0

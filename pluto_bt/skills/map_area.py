@@ -24,6 +24,11 @@ class MapArea:
         areas = () if world is None else world.areas
         return cls(tuple((float(x), float(y)) for x, y in area.points) for area in areas if area.kind == "map")
 
+    @property
+    def is_everything(self) -> bool:
+        """True if no limit is known."""
+        return not self._polygons
+
     def has_point(self, x: float, y: float) -> bool:
         """True inside one of the polygons or on its edge."""
         return not self._polygons or any(_is_on(x, y, *edge) for edge in self._edges) or any(_is_in(x, y, p) for p in self._polygons)

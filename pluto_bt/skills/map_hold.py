@@ -17,12 +17,12 @@ OUTSIDE_M = 0.05  # a position may be wrong by so much before it counts as outsi
 BACK_M, STEP_M = 3.0, 0.1  # an arc that does not meet the area within this way, looked at in such steps, does not lead back
 
 
-def held_by_area(area: MapArea, twist: Twist, pose: Planar | None, stop_m: float, verdict: Verdict) -> tuple[Twist, Verdict]:
+def held_by_area(area: MapArea, twist: Twist, pose: Planar, stop_m: float, verdict: Verdict) -> tuple[Twist, Verdict]:
     """What passes of a twist, and why; `verdict` is that of the twist as it comes.
 
     The edge itself is not kept: a car on its round may come near to it on an arc that turns away in time. `stop_m` is the way to standstill.
     """
-    if pose is None or twist[0] == 0.0:
+    if twist[0] == 0.0:
         return twist, verdict
     ahead = math.copysign(1.0, twist[0])
     if area.has_point(pose[0], pose[1]) or area.has_point(*on_arc(pose, twist, OUTSIDE_M * ahead)):

@@ -46,6 +46,7 @@ class StopFilter:
         devices, motors = platform.devices, platform.limits
         self._lag_s = motors.motor_latency_s + motors.motor_time_constant_s
         self._hold_s = p.period_s + self._lag_s + 0.05  # odometry and scheduling take their time too
+        self._has_bumpers = devices.bumpers is not None
         self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
         has_eyes = devices.laser is not None or devices.sonar is not None
         self.eyes = FilterEyes(platform, p, self._outline, self._window_m(self.limits.speed_mps)) if has_eyes else None
@@ -112,7 +113,8 @@ class StopFilter:
             return STILL, ALL_WELL
         held, verdict = self._bumped(wanted, senses.bumper)
         if self.eyes is None:
-            return held_by_area(self._area, held, senses.pose_map, self._stop_m(held[0]), verdict)
+            place = senses.pose_map  # fresh, or `_trouble` had spoken, where there is an area to leave
+            return (held, verdict) if place is None else held_by_area(self._area, held, place[1], self._stop_m(held[0]), verdict)
         if not self.eyes.hears(now_s):
             deaf = Verdict(LinkStatus.SONAR_FRONT, reasons.SONAR_STALE, f"no usable echoes younger than {p.sonar_stale_s:g} s")
             held, verdict = self._slowed(held, p.without_sonar_mps, deaf, verdict)
@@ -131,9 +133,22 @@ class StopFilter:
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
             age = "no odometry at all" if raw is None else f"the newest odometry is {now_s - raw.stamp_s:.2f} s old"
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_STALE, f"{age}; {p.odometry_stale_s:g} s are allowed")
-        if self.eyes is not None and (senses.pose is None or now_s - senses.pose[0] > p.odometry_stale_s):
-            return Verdict(LinkStatus.NORMAL, reasons.NO_POSE, f"dead reckoning has given no pose for {p.odometry_stale_s:g} s")
-        return wheels
+        bumper = senses.bumper
+        if self._has_bumpers and (bumper is None or now_s - bumper.stamp_s > p.bumper_stale_s):
+            return Verdict(LinkStatus.NORMAL, reasons.BUMPER_STALE, f"no bumper reading younger than {p.bumper_stale_s:g} s")
+        return self._placeless(now_s, senses) or wheels
+
+    def _placeless(self, now_s: float, senses: FilterSenses) -> Verdict | None:
+        """What is missing of the pose that the filter reckons with: with eyes dead reckoning, else the one on the map, if an area holds it there."""
+        stale_s = self.parameters.odometry_stale_s
+        if self.eyes is not None:
+            pose, whose = senses.pose, "dead reckoning"
+        elif self._area.is_everything:
+            return None
+        else:
+            pose, whose = senses.pose_map, "localisation"
+        is_known = pose is not None and now_s - pose[0] <= stale_s
+        return None if is_known else Verdict(LinkStatus.NORMAL, reasons.NO_POSE, f"{whose} has given no pose for {stale_s:g} s")
 
     def _bumped(self, twist: Twist, bumper: BumperState | None) -> tuple[Twist, Verdict]:
         """A pressed panel: no motion towards it, and no rotation."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass
 from typing import Final
 
@@ -15,6 +16,7 @@ WIDTH_SHARE: Final = 0.3  # how much each metre of another width counts beside m
 YOUNG_M: Final = 0.3  # by so much a track that nobody has watched yet stands back
 FORGET_S: Final = 1.5  # a track is dropped after so long out of sight
 FORETELL_S: Final = 1.0  # what is out of sight is thought to go on for so long
+FURNITURE: Final = 500  # so many places are remembered, the newest
 SAME_PLACE_M: Final = 0.4  # what comes into view again so near to where something stood is that thing
 POSITION_GAIN, VELOCITY_GAIN, WIDTH_GAIN = 0.6, 0.3, 0.1  # of the alpha-beta filter; widths change as a body turns
 
@@ -65,7 +67,7 @@ class Tracks:
 
     def __init__(self) -> None:
         self.all: list[Track] = []
-        self._furniture: list[tuple[float, float]] = []
+        self._furniture: deque[tuple[float, float]] = deque(maxlen=FURNITURE)
 
     def see(self, pieces: list[Piece], stamp_s: float, keep: Track | None) -> None:
         """Give the pieces of a scan to the tracks that they fit, the best fit first; the others begin new ones. `keep` is never dropped."""
@@ -78,7 +80,7 @@ class Tracks:
                 free.discard(k)
         self.all += [_born(piece, stamp_s) for k, piece in enumerate(pieces) if k in free]
         gone = [track for track in self.all if track is not keep and stamp_s - track.seen_s >= FORGET_S]
-        self._furniture += [track.first for track in gone if not track.moves and track.seen_s - track.born_s >= WATCHED_S]
+        self._furniture.extend(track.first for track in gone if not track.moves and track.seen_s - track.born_s >= WATCHED_S)
         self.all = [track for track in self.all if track not in gone]
 
     def stood_there(self, track: Track) -> bool:

@@ -14,7 +14,7 @@ from pluto_bt.blackboard.codes import status_name
 from pluto_bt.record.entries import Link
 from pluto_bt.record.trail import Trail, Trouble
 from pluto_bt.skills import reasons
-from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, cure, meaning, rank
+from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, cure, meaning, rank
 
 LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
 LOCALISATION: Final = "localisation"
@@ -132,7 +132,7 @@ def _sensor(view: View) -> Cause | None:
     if not words:
         return None
     stale = view.trail.situation.stale
-    if ODOMETRY in stale and any(word in (reasons.ODOMETRY_STALE, reasons.NO_POSE, reasons.SONAR_STALE, "base-lost") for word in words):
+    if ODOMETRY in stale and any(word in OF_THE_BASE for word in words):
         return _base(view)
     ranked = sorted(range(len(words)), key=lambda i: (rank(words[i]), i))
     if words[ranked[0]] not in OF_SENSOR:

@@ -14,6 +14,7 @@ WHEEL_SLIP: Final = "wheel-slip"
 OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
     reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
+    reasons.BUMPER_STALE: ("bumpers", "ATRV2/Bumper"),
     reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
     reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
     reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
@@ -21,6 +22,11 @@ OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
 }  # fmt: skip
+BROKEN: Final = (  # devices
+    reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN,
+    reasons.BUMPER, reasons.BUMPER_STALE,
+)  # fmt: skip
+OF_THE_BASE: Final = (reasons.ODOMETRY_STALE, reasons.NO_POSE, reasons.SONAR_STALE, reasons.BUMPER_STALE, "base-lost")  # while odometry is stale
 OF_CODE: Final[dict[int | None, str]] = {
     LinkStatus.LASER_FATAL: reasons.LASER_FATAL, LinkStatus.LASER_SLOW_STOP: reasons.LASER, LinkStatus.FRONT_BUMPER: reasons.BUMPER,
     LinkStatus.BACK_BUMPER: reasons.BUMPER, LinkStatus.COMMAND_TIMEOUT: reasons.COMMAND_TIMEOUT,
@@ -35,7 +41,7 @@ CURES: Final = {
 
 def rank(word: str) -> int:
     """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
-    if word in (reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN, reasons.BUMPER):
+    if word in BROKEN:
         return 0
     if word in (reasons.NO_POSE, reasons.LOST, "tilted", "hindered", reasons.OUTSIDE_MAP):
         return 1

@@ -11,6 +11,7 @@ import pytest
 from pluto_bt.behaviours.catalogue import ACTIONS, CONDITIONS, LEAVES
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
 from pluto_bt.behaviours.reasons import REASONS, WAITING
+from pluto_bt.behaviours.way_driven import WayDriven
 from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, ImuState
 from pluto_bt.trees import TickError, load_mission
 
@@ -215,6 +216,28 @@ def test_drive_velocity_ends_by_distance(stage: Any) -> None:
         if stage.tick(mission) != "RUNNING":
             break
     assert k == pytest.approx(20, abs=1)
+
+
+@pytest.mark.parametrize("leaf", ['DriveVelocity speed_mps="0.5"', 'HoldHeading heading_deg="0" speed_mps="0.5"'])
+def test_a_jump_of_the_odometry_is_no_way(stage: Any, leaf: str) -> None:
+    mission = stage.load(f'<{leaf} distance_m="1"/>')
+    for k in range(100):
+        stage.robot.is_at(0.05 * k, 0.0)
+        stage.robot.values["ATRV2/Drive/Raw"] = ActuatorState(stage.clock.now_s(), 0, (0.05 * k + (2.0 if k > 5 else 0.0), 0.0), (0.5, 0.0))
+        if stage.tick(mission) != "RUNNING":
+            break
+    assert k == pytest.approx(20, abs=1)
+
+
+@pytest.mark.parametrize(("step_m", "turn_rad"), [(0.1, 0.0), (-0.1, 0.0), (0.1, 0.4), (-0.1, -0.4)])
+def test_the_way_is_that_of_the_wheels_also_on_arcs(stage: Any, step_m: float, turn_rad: float) -> None:
+    way, x, y, theta = WayDriven(stage.robot), 1.0, 2.0, 3.0
+    for _ in range(20):
+        stage.robot.is_at(x, y, math.remainder(theta, math.tau))
+        way.step(stage.robot)
+        chord_m = step_m * (math.sin(turn_rad / 2) / (turn_rad / 2) if turn_rad else 1.0)
+        x, y, theta = x + chord_m * math.cos(theta + turn_rad / 2), y + chord_m * math.sin(theta + turn_rad / 2), theta + turn_rad
+    assert way.way_m == pytest.approx(19 * step_m)
 
 
 @pytest.mark.parametrize(("platform", "turn"), [("skid", 0.5), ("car", 0.5 * 0.4 / 0.8)])

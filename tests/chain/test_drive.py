@@ -23,8 +23,11 @@ class Bench:
         self.now = 0.0
         self.ranges = CLEAR
         self.front = self.back = False
-        self.raw_age = self.sonar_age = 0.0
+        self.raw_age = self.sonar_age = self.bumper_age = 0.0
         self.heading = self.distance = 0.0
+
+    def bumper(self) -> BumperState | None:
+        return None if math.isinf(self.bumper_age) else BumperState(self.now - self.bumper_age, self.front, self.back)
 
     def order(self, flags: int, velocity: Twist = STILL, heading: float = 0.0) -> None:
         self.drive.accept(ActuatorState(self.now, flags, (0.0, heading), velocity), self.now)
@@ -33,7 +36,7 @@ class Bench:
         twist = STILL
         for _ in range(round(seconds / 0.05)):
             raw = ActuatorState(self.now - self.raw_age, 0, (self.distance, self.heading))
-            senses = DriveSenses(raw, SonarState(self.now - self.sonar_age, self.ranges), BumperState(self.now, self.front, self.back))
+            senses = DriveSenses(raw, SonarState(self.now - self.sonar_age, self.ranges), self.bumper())
             twist = self.drive.step(self.now, senses)
             self.now += 0.05
             self.distance += twist[0] * 0.05
@@ -242,6 +245,22 @@ def test_old_echoes_stop_when_asked_for() -> None:
     bench.order(10, (0.5, 0.0))
     assert bench.run(1.0) == STILL
     assert bench.reason == "sonar-stale"
+
+
+@pytest.mark.parametrize(("age_s", "word"), [(0.45, ""), (0.55, "bumper-stale"), (math.inf, "bumper-stale")])
+def test_bumpers_that_are_silent_stop_whatever_is_asked_for(age_s: float, word: str) -> None:
+    bench = Bench()
+    bench.bumper_age = age_s
+    bench.order(0, (0.2, 0.0))
+    assert bench.run(1.0) == (STILL if word else (0.2, 0.0))
+    assert (bench.code, bench.reason) == (0, word)
+
+
+def test_a_robot_without_bumpers_misses_none() -> None:
+    bench = Bench(CAR)
+    bench.bumper_age = math.inf
+    bench.order(0, (0.2, 0.0))
+    assert bench.run(1.0) == (0.2, 0.0)
 
 
 def test_old_odometry_stops_at_once_and_fresh_odometry_goes_on() -> None:

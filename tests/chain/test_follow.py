@@ -10,6 +10,7 @@ import pytest
 
 from pluto_bt.skills.follow import Follow, Search
 from pluto_bt.skills.pieces import Piece, pieces_of
+from pluto_bt.skills.tracks import FURNITURE, Track, Tracks
 
 STEP = math.radians(0.5)
 HERE = (0.0, 0.0, 0.0)
@@ -152,6 +153,19 @@ def test_one_who_stops_while_he_is_hidden_is_found_where_he_stands_and_furniture
     assert state is Search.SEEN
     assert follow.target is not None and math.dist((follow.target.x_m, follow.target.y_m), (8.6, 0.6)) < 0.3
     assert distances[-1] == pytest.approx(1.5, abs=0.4)
+
+
+def test_the_memory_of_furniture_has_an_end_and_keeps_the_newest() -> None:
+    tracks = Tracks()
+    for k in range(2 * FURNITURE):  # one thing after the other is looked at for a second, then left behind
+        for scan in range(6):
+            tracks.see([Piece(2.0 * k, 0.0, 0.4)], 3.0 * k + 0.2 * scan, None)
+    tracks.see([], 6.0 * FURNITURE, None)
+
+    def stood_at(k: int) -> bool:
+        return tracks.stood_there(Track(2.0 * k, 0.0, 0.4, 0.0, 0.0, (0.0, 0.0)))
+
+    assert [stood_at(k) for k in (0, FURNITURE - 1, FURNITURE, 2 * FURNITURE - 1)] == [False, False, True, True]
 
 
 def test_a_scan_that_cuts_him_in_two_does_not_part_him_from_his_track() -> None:

@@ -9,6 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pluto_bt.blackboard.inbox import Inbox
+from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
@@ -108,6 +110,29 @@ def test_two_parts_that_wake_each_other_do_not_hold_the_clock() -> None:
     wakers.update(a=scheduler.waker(0), b=scheduler.waker(1))
     scheduler.run_until(NS)
     assert clock.now_ns() == NS
+
+
+def test_a_stop_is_not_held_up_by_parts_that_wake_each_other() -> None:
+    log: list[tuple[str, float]] = []
+    wakers: dict[str, Callable[[], None]] = {}
+    inbox = Inbox("c")
+    turns = iter(range(1000))
+
+    def order(now_s: float) -> None:
+        wakers["b"]()
+        turn = next(turns)
+        if turn == 9:  # by then the wakes of this moment are used up
+            inbox.post("a", ActuatorState(now_s))
+            inbox.stop("a", now_s)
+
+    answering = Recorder("b", log, lambda now_s: wakers["a"]())
+    scheduler, _ = lockstep((row("a", 0.1), Recorder("a", log, order)), (row("b", 0.0), answering), (row("c", 0.0), Recorder("c", log)))
+    log.clear()
+    wakers.update(a=scheduler.waker(0), b=scheduler.waker(1))
+    inbox.on_post(scheduler.waker(2), scheduler.waker(2, for_stop=True))
+    scheduler.run_until(NS)
+    stopped_s = [t for name, t in log if name == "a"][10]
+    assert [t for name, t in log if name == "c"] == [stopped_s], "the command is left for the next period, the stop is not"
 
 
 def test_keep_going_is_asked_before_the_clock_moves() -> None:

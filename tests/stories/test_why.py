@@ -18,13 +18,14 @@ from pluto_bt.source import Faults
 from pluto_bt.system import System
 from pluto_bt.trees.why import Cause
 from pluto_bt.trees.why_box import why_at
-from tests.stories.test_faults import GONE, ROWS, FaultRow, faulty
+from tests.stories.test_faults import GONE, ROWS, FaultRow, faulty, platform_for
 
 SILENT = (*GONE, "frozen", "late")
 FIRST: dict[tuple[str, str], tuple[str, str]] = {
     **{("laser", kind): ("sensor", "laser-stale") for kind in (*SILENT, "stuck", "nan")},
     ("laser", "fatal"): ("sensor", "laser-fatal"),
     **{("sonar", kind): ("sensor", "sonar-stale") for kind in (*SILENT, "nan")},
+    **{("bumpers", kind): ("sensor", "bumper-stale") for kind in SILENT},
     **{("odometry", kind): ("sensor", "odometry-stale") for kind in (*SILENT, "nan")},
     **{("base", kind): ("sensor", "base-lost") for kind in SILENT},
     **{(device, "stuck"): ("sensor", "odometry-frozen") for device in ("base", "odometry")},
@@ -50,7 +51,7 @@ def opened(path: Path) -> Box:
 def test_the_first_cause_of_a_fault_is_named(scenario: Play, tmp_path: Path, number: int) -> None:
     row: FaultRow = DECISIVE[number]
     until_s = SLOW.get((row.device, row.kind), 6.0)
-    scenario(faulty(row, tmp_path), mission="patrol.xml", platform=("pioneer", "atrv2")[number % 2], start="-4.5,0,0",
+    scenario(faulty(row, tmp_path), mission="patrol.xml", platform=platform_for(row, number), start="-4.5,0,0",
              ports={"goals": "4,0.5", "timeout_s": 30}, max_time_s=until_s, record=tmp_path / "a.mcap")  # fmt: skip
     box = opened(tmp_path / "a.mcap")
     first = why_at(box, None if row.device == "leaf" or row.kind in ("raise", "hang", "stuck") else 5.5).first
