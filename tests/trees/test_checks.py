@@ -353,8 +353,8 @@ def test_all_faults_are_told_though_an_included_file_is_missing() -> None:
 
 @pytest.mark.parametrize(("always", "faults"), [
     ("@Localization_Pose_x &lt; 30 &amp;&amp; n &lt; 3", []),
-    ("@Localization_Pose_q &lt; 30", ["4:28 warning unknown-topic"]),
-    ("m &lt; 30", ["4:28 warning unset-key"]),
+    ("@Localization_Pose_q &lt; 30", ["4:28 error unknown-topic"]),
+    ("m &lt; 30", ["4:28 error unset-key"]),
 ])  # fmt: skip
 def test_what_a_contract_looks_at_should_be_there_some_time(always: str, faults: list[str]) -> None:
     assert told('<Script code="n := 1"/>', f'<Contract name="c" always="{always}"/>') == faults

@@ -10,9 +10,8 @@ from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.scopes import EMPTY, Scope
-from pluto_bt.trees.values import BOOL, DOUBLE, INT, PortProblem, literal_value
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, PortProblem, declared_value
 
-REALS = ("double", "float")
 # What a model may declare of an input, as `type`; other words are taken for C++ types that mean nothing here.
 DECLARED = {
     "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL,
@@ -43,7 +42,7 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
 
 
 def _write(root: Scope, name: str, text: str, type_name: str, place: Place, report: Report) -> None:
-    """Typed as a SubTree's literal is, but that digits for an input declared as a real number are one."""
+    """Typed as a SubTree's literal is."""
     kind = DECLARED.get(type_name)
     if kind is not None:
         try:
@@ -53,8 +52,7 @@ def _write(root: Scope, name: str, text: str, type_name: str, place: Place, repo
             report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=str(error))
             return
     try:
-        value = literal_value(text)
-        root.write(name, float(value) if type_name in REALS and isinstance(value, int) else value)
+        root.write(name, declared_value(text, type_name))
     except PortProblem as problem:
         report.error(place, "bad-input", str(problem), expected="a value of the entry's kind", found=text)
 
