@@ -250,3 +250,31 @@ def test_an_empty_sarif_log_is_a_log(capsys: pytest.CaptureFixture[str]) -> None
     assert json.loads(capsys.readouterr().out)["runs"][0]["results"] == []
     assert main(["check", "t01_say_hello.xml", "--format", "github"]) == 0
     assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(("body", "platform", "faults"), [
+    ('<MoveTo goal="6;5"/>', "jbot", ["2:1 error no-device"]),
+    ('<Fallback><Follow/><GoTo goal="6;5"/></Fallback>', "jbot", ["2:11 warning no-device"]),
+    ('<Follow _skipIf="1 == 2"/>', "jbot", ["2:1 warning no-device"]),
+    ('<WallFollow/>', "jbot", []),
+    ('<WallFollow/>', "car", ["2:1 error no-device"]),
+    ('<PointWrist pan_deg="10"/>', "pioneer", ["2:1 error no-device"]),
+    ('<SweepWrist optional="true"/><UnfoldArm optional="{=}"/>', "pioneer", []),
+    ('<MakeTurn angle_deg="90"/>', "jbot", []),
+    ('<MoveTo goal="6;5"/>', "pioneer", []),
+])  # fmt: skip
+@pytest.mark.parametrize("with_world", [True, False])
+def test_a_leaf_whose_device_the_robot_does_not_have(
+    capsys: pytest.CaptureFixture[str], body: str, platform: str, faults: list[str], with_world: bool
+) -> None:
+    Path("m.xml").write_text(MISSION.format(body=body), encoding="utf-8")
+    Path("w.xml").write_text(f'<world name="w"><area kind="map">0,0 20,0 20,10 0,10</area><robot platform="{platform}" x="2" y="5"/></world>')
+    main(["check", "m.xml", "--format", "json", *(["--world", "w.xml"] if with_world else ["--platform", platform])])
+    found = [fault for fault in json.loads(capsys.readouterr().out)["faults"] if fault["code"] in ("no-device", "unknown-platform")]
+    assert [f"{fault['line']}:{fault['column']} {fault['severity']} {fault['code']}" for fault in found] == faults
+
+
+def test_a_leg_begins_where_the_one_to_a_named_goal_ended(capsys: pytest.CaptureFixture[str]) -> None:
+    body = '<NavigateTo goal="gate"/><NavigateTo goal="6;5"/><NavigateTo goal="gate"/>'
+    _, answer = checked(capsys, body)
+    assert [leg["start"] for leg in answer["legs"]] == [[2, 5], [12, 2], [6, 5]] and all(leg["distance_m"] for leg in answer["legs"])
