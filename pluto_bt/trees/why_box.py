@@ -16,6 +16,12 @@ def why_at(box: Box, t_s: float | None = None) -> Answer:
     return Answer(False) if number < 0 else explain(view_of(box, box.now(number)))
 
 
+def end_s(box: Box) -> float | None:
+    """When the mission had ended; None if the recording breaks off before."""
+    tick = box.tick(_last(box))
+    return tick.t_s if any(branch.state != "running" for branch in tick.trees) else None
+
+
 def view_of(box: Box, now: Now) -> View:
     """What `why` looks at."""
     trees = now.at_work()

@@ -29,7 +29,7 @@ def check_literal(attribute: XmlAttribute, port: PortModel, report: Report, *, b
     problem = range_problem(port, value)
     if problem:
         what = f'"{text}" is outside what port "{port.name}" allows'
-        report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=text)
+        report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=text, mend=problem)
     elif rest := trailing_text(port.kind, text):
         _tell_rest(attribute, port, value, rest, report, builtin=builtin)
 
