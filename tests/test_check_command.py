@@ -278,3 +278,37 @@ def test_a_leg_begins_where_the_one_to_a_named_goal_ended(capsys: pytest.Capture
     body = '<NavigateTo goal="gate"/><NavigateTo goal="6;5"/><NavigateTo goal="gate"/>'
     _, answer = checked(capsys, body)
     assert [leg["start"] for leg in answer["legs"]] == [[2, 5], [12, 2], [6, 5]] and all(leg["distance_m"] for leg in answer["legs"])
+
+
+@pytest.mark.parametrize(("fault", "platform", "found"), [
+    ('device="laser" kind="nan" beams="900-950"', "atrv2", ["no-beam"]),
+    ('device="laser" kind="nan" beams="300-360"', "atrv2", []),
+    ('device="sonar" kind="nan" beams="12"', "atrv2", ["no-beam"]),
+    ('device="laser" kind="off"', "jbot", ["no-device"]),
+    ('device="wrist" kind="blocked"', "pioneer", ["no-device"]),
+    ('device="imu" kind="off"', "atrv2", []),
+    ('device="base" kind="blocked"', "jbot", []),
+])  # fmt: skip
+def test_a_fault_that_means_nothing_on_the_robot(capsys: pytest.CaptureFixture[str], fault: str, platform: str, found: list[str]) -> None:
+    Path("w.xml").write_text(f'<world name="w"><robot platform="{platform}" x="2" y="5"/><script><at t="1">\n<fault {fault}/></at></script></world>')
+    assert main(["check", "w.xml", "--format", "json"]) == 0
+    faults = json.loads(capsys.readouterr().out)["faults"]
+    assert [one["code"] for one in faults] == found and all(one["line"] == 2 and one["severity"] == "warning" for one in faults)
+
+
+def test_what_is_like_no_file_is_not_taken_for_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "nofile.xml"]) == 2 and "did you mean" not in capsys.readouterr().err
+    assert main(["run", "patol.xml"]) == 2 and 'did you mean "patrol.xml"?' in capsys.readouterr().err
+
+
+def test_numbers_that_are_none_are_told_as_what_they_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "patrol.xml", "--port", "goals=4,3", "--set", "drive.max_speed_mps=nan"]) == 2
+    told = capsys.readouterr().err
+    assert "got str" not in told and "NaN" in told and "a number >= 0" in told
+
+
+def test_nodes_by_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["nodes", "GoTo"]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("GoTo ") and "goal" in told and "NavigateTo" not in told
+    assert main(["nodes", "Goto"]) == 2 and 'did you mean "GoTo"?' in capsys.readouterr().err

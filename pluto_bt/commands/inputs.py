@@ -11,7 +11,7 @@ from pluto_bt.commands.files import find_file
 from pluto_bt.commands.missions import examine_file
 from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
 from pluto_bt.commands.plugins import load_plugins
-from pluto_bt.commands.world_checks import check_script, check_start, in_file
+from pluto_bt.commands.world_checks import check_faults, check_script, check_start, in_file
 from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
 from pluto_bt.modules.live_parameters import value_of
@@ -108,6 +108,8 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
         if robot is not None and start is not None:
             check_start(world, robot, start, request.start, faults)
         check_script(world, faults)
+        if robot is not None:
+            check_faults(world, robot, faults)
         if examined is not None and examined.plan is not None:
             faults.extend(check_world_words(examined.plan, world, a_priori or world, may_fail=True))
     if robot is not None and examined is not None and examined.plan is not None:
@@ -130,6 +132,8 @@ def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World 
     if robot is not None and world.robot.pose is not None:
         check_start(world, robot, world.robot.pose, None, faults)
     check_script(world, faults)
+    if robot is not None:
+        check_faults(world, robot, faults)
     return world, robot
 
 

@@ -17,9 +17,8 @@ def why_at(box: Box, t_s: float | None = None) -> Answer:
 
 
 def end_s(box: Box) -> float | None:
-    """When the mission had ended; None if the recording breaks off before."""
-    tick = box.tick(_last(box))
-    return tick.t_s if any(branch.state != "running" for branch in tick.trees) else None
+    """When the run was over; None if the recording breaks off before."""
+    return box.tick(_last(box)).t_s if box.file.is_whole else None
 
 
 def view_of(box: Box, now: Now) -> View:

@@ -383,3 +383,12 @@ def test_no_goal_lies_beyond_what_a_world_can_be(leaf: str) -> None:
     assert told(leaf.format("999999;-3")) == []
     (fault,) = told(leaf.format("1e12;-3"))
     assert fault.startswith("2:") and " error " in fault
+
+
+@pytest.mark.parametrize(("text", "faults"), [
+    ("n is {n}", ["2:17 warning braces-in-text"]),
+    ("json:{}", []),
+    ("a {} b", []),
+])  # fmt: skip
+def test_an_entry_inside_a_text_is_no_entry(text: str, faults: list[str]) -> None:
+    assert told(f'<Say text="{text}"/>') == faults
