@@ -298,6 +298,7 @@ def test_a_fault_that_means_nothing_on_the_robot(capsys: pytest.CaptureFixture[s
 
 def test_what_is_like_no_file_is_not_taken_for_one(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "nofile.xml"]) == 2 and "did you mean" not in capsys.readouterr().err
+    assert main(["diff", "yard.xml", "patrol.xml"]) == 2 and "found     a shipped world\n" in capsys.readouterr().err
     assert main(["run", "patol.xml"]) == 2 and 'did you mean "patrol.xml"?' in capsys.readouterr().err
 
 

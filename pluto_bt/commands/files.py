@@ -28,6 +28,8 @@ def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) 
         if os.path.isfile(candidate):  # unlike Path.is_file, False for whatever cannot be a name
             return candidate
     found = "a folder" if os.path.isdir(name) else "no ordinary file" if os.path.lexists(name) else name or "nothing"
+    other = next((word for word in SHIPPED if word != kind and Path(name).name in shipped_names(word)), "")
+    found = f"a shipped {other}" if other and not os.path.lexists(name) else found
     known = shipped_names(kind)
     faults.error(Place(name or f'{kind} ""'), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}",
                  found=found, mend=nearest_file(name, known))  # fmt: skip
