@@ -9,12 +9,14 @@ from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.resume import HELD
 from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
+from pluto_bt.runtime.latch import OPERATOR_STOP
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.skills import plan_map, wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
+from pluto_bt.trees.executive import PAUSED
 
 STOP_WITHIN_S = 3.0
 LOCKSTEP_LIMIT_S, THREADS_LIMIT_S = 10.0, 2.0
@@ -109,8 +111,8 @@ class Loop:
         mission, limit_s = system.executive.core.mission, system.options.max_time_s
         if guard.ended is not None or (mission is not None and mission.is_over):
             return True
-        if self.held and limit_s is None and not system.options.takes_orders and isinstance(system.scheduler, Lockstep):
-            guard.end(HELD, self.held)  # nobody is there who could let it go on
+        if (asked := self._asked_of_nobody()) and limit_s is None:
+            guard.end(HELD, asked)
         elif self._interrupt.is_set():
             guard.end("interrupted", "interrupted: Ctrl-C, SIGTERM, or the terminal was closed")
         elif limit_s is not None and system.clock.now_s() >= limit_s:
@@ -118,6 +120,16 @@ class Loop:
         else:
             guard.look()
         return guard.ended is not None
+
+    def _asked_of_nobody(self) -> str:
+        """Why the mission waits for an operator where there is none, in virtual time without a gateway; "" else."""
+        system = self._system
+        if system.options.takes_orders or not isinstance(system.scheduler, Lockstep):
+            return ""
+        stop, mission = system.latch.hold(OPERATOR_STOP), system.executive.core.mission
+        if self.held or stop is None or mission is None or mission.state != PAUSED:
+            return self.held
+        return f"{stop.text}, and nobody is there to let it go on; with --gateway or --realtime an operator can"
 
     def _settle(self) -> None:
         """Bring the robot to rest: stop every link, then let time pass until it stands."""

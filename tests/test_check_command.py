@@ -250,3 +250,66 @@ def test_an_empty_sarif_log_is_a_log(capsys: pytest.CaptureFixture[str]) -> None
     assert json.loads(capsys.readouterr().out)["runs"][0]["results"] == []
     assert main(["check", "t01_say_hello.xml", "--format", "github"]) == 0
     assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(("body", "platform", "faults"), [
+    ('<MoveTo goal="6;5"/>', "jbot", ["2:1 error no-device"]),
+    ('<Fallback><Follow/><GoTo goal="6;5"/></Fallback>', "jbot", ["2:11 warning no-device"]),
+    ('<Follow _skipIf="1 == 2"/>', "jbot", ["2:1 warning no-device"]),
+    ('<WallFollow/>', "jbot", []),
+    ('<WallFollow/>', "car", ["2:1 error no-device"]),
+    ('<PointWrist pan_deg="10"/>', "pioneer", ["2:1 error no-device"]),
+    ('<SweepWrist optional="true"/><UnfoldArm optional="{=}"/>', "pioneer", []),
+    ('<MakeTurn angle_deg="90"/>', "jbot", []),
+    ('<MoveTo goal="6;5"/>', "pioneer", []),
+])  # fmt: skip
+@pytest.mark.parametrize("with_world", [True, False])
+def test_a_leaf_whose_device_the_robot_does_not_have(
+    capsys: pytest.CaptureFixture[str], body: str, platform: str, faults: list[str], with_world: bool
+) -> None:
+    Path("m.xml").write_text(MISSION.format(body=body), encoding="utf-8")
+    Path("w.xml").write_text(f'<world name="w"><area kind="map">0,0 20,0 20,10 0,10</area><robot platform="{platform}" x="2" y="5"/></world>')
+    main(["check", "m.xml", "--format", "json", *(["--world", "w.xml"] if with_world else ["--platform", platform])])
+    found = [fault for fault in json.loads(capsys.readouterr().out)["faults"] if fault["code"] in ("no-device", "unknown-platform")]
+    assert [f"{fault['line']}:{fault['column']} {fault['severity']} {fault['code']}" for fault in found] == faults
+
+
+def test_a_leg_begins_where_the_one_to_a_named_goal_ended(capsys: pytest.CaptureFixture[str]) -> None:
+    body = '<NavigateTo goal="gate"/><NavigateTo goal="6;5"/><NavigateTo goal="gate"/>'
+    _, answer = checked(capsys, body)
+    assert [leg["start"] for leg in answer["legs"]] == [[2, 5], [12, 2], [6, 5]] and all(leg["distance_m"] for leg in answer["legs"])
+
+
+@pytest.mark.parametrize(("fault", "platform", "found"), [
+    ('device="laser" kind="nan" beams="900-950"', "atrv2", ["no-beam"]),
+    ('device="laser" kind="nan" beams="300-360"', "atrv2", []),
+    ('device="sonar" kind="nan" beams="12"', "atrv2", ["no-beam"]),
+    ('device="laser" kind="off"', "jbot", ["no-device"]),
+    ('device="wrist" kind="blocked"', "pioneer", ["no-device"]),
+    ('device="imu" kind="off"', "atrv2", []),
+    ('device="base" kind="blocked"', "jbot", []),
+])  # fmt: skip
+def test_a_fault_that_means_nothing_on_the_robot(capsys: pytest.CaptureFixture[str], fault: str, platform: str, found: list[str]) -> None:
+    Path("w.xml").write_text(f'<world name="w"><robot platform="{platform}" x="2" y="5"/><script><at t="1">\n<fault {fault}/></at></script></world>')
+    assert main(["check", "w.xml", "--format", "json"]) == 0
+    faults = json.loads(capsys.readouterr().out)["faults"]
+    assert [one["code"] for one in faults] == found and all(one["line"] == 2 and one["severity"] == "warning" for one in faults)
+
+
+def test_what_is_like_no_file_is_not_taken_for_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "nofile.xml"]) == 2 and "did you mean" not in capsys.readouterr().err
+    assert main(["diff", "yard.xml", "patrol.xml"]) == 2 and "found     a shipped world\n" in capsys.readouterr().err
+    assert main(["run", "patol.xml"]) == 2 and 'did you mean "patrol.xml"?' in capsys.readouterr().err
+
+
+def test_numbers_that_are_none_are_told_as_what_they_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "patrol.xml", "--port", "goals=4,3", "--set", "drive.max_speed_mps=nan"]) == 2
+    told = capsys.readouterr().err
+    assert "got str" not in told and "NaN" in told and "a number >= 0" in told
+
+
+def test_nodes_by_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["nodes", "GoTo"]) == 0
+    told = capsys.readouterr().out
+    assert told.startswith("GoTo ") and "goal" in told and "NavigateTo" not in told
+    assert main(["nodes", "Goto"]) == 2 and 'did you mean "GoTo"?' in capsys.readouterr().err

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from py_trees.common import Status
 
 from pluto_bt.behaviours.leaf import Leaf
@@ -15,6 +17,7 @@ THERE = 0.01
 class UnfoldArm(Leaf):
     """Unfolds the arm, or folds it again; SUCCESS when it has come to its end. Does not touch the wheels."""
 
+    DEVICES: ClassVar = ("arm",)
     INPUT_PORTS = {
         "folded": Port(bool, False, "true: fold it", False),
         "optional": Port(bool, False, "true: a robot without an arm does nothing instead of failing", False),
@@ -32,7 +35,7 @@ class UnfoldArm(Leaf):
         if robot is None:
             return self.fail("not-connected", "no robot")
         if robot.platform.devices.arm is None:
-            return self.succeed("no arm") if self.get_input("optional") else self.fail("no-device", "the platform has no arm")
+            return self.succeed("no arm") if self.get_input("optional") else self.fail("no-device", self.lacks(robot.platform.devices))
         target = 0.0 if self.get_input("folded") else 1.0
         if not self._is_sent:
             self._is_sent = True

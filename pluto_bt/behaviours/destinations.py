@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
+from pluto_bt.maps.numbers import MAX_METRES
 from pluto_bt.maps.world import World
 
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
@@ -45,7 +46,7 @@ class Destination:
             return _one_of_parts(parts)
         if len(parts) in (2, 3) and all(map(_NUMBER.fullmatch, parts)):
             numbers = [_finite(part) for part in parts]
-            return cls(numbers[0], numbers[1], numbers[2] if len(numbers) == 3 else None)
+            return cls(_metres(numbers[0]), _metres(numbers[1]), numbers[2] if len(numbers) == 3 else None)
         if len(parts) == 1 and parts[0] and not _NUMBER.fullmatch(parts[0]):
             return cls(name=parts[0])
         raise ValueError(f"expected {cls.TEXT_FORM}")
@@ -54,7 +55,7 @@ class Destination:
     def from_value(cls, value: object) -> Destination:
         """A point or pose that another node wrote as numbers. Raises ValueError."""
         if isinstance(value, (tuple, list)) and len(value) in (2, 3) and all(isinstance(part, (int, float)) for part in value):
-            return cls(float(value[0]), float(value[1]), float(value[2]) if len(value) == 3 else None)
+            return cls(_metres(value[0]), _metres(value[1]), float(value[2]) if len(value) == 3 else None)
         raise ValueError(f"expected {cls.TEXT_FORM}")
 
     @property
@@ -156,14 +157,14 @@ def pose_of_parts(parts: Sequence[str]) -> tuple[int, str, float, float, float]:
     if len(parts) != POSE_PARTS:
         raise ValueError(f"a pose has {POSE_PARTS} parts, not {len(parts)}")
     x, y, _, qx, qy, qz, qw = (_finite(part) for part in parts[2:])
-    return int(_finite(parts[0])), parts[1].strip(), x, y, yaw_deg(qx, qy, qz, qw)
+    return int(_finite(parts[0])), parts[1].strip(), _metres(x), _metres(y), yaw_deg(qx, qy, qz, qw)
 
 
 def pose_of_json(tree: Any) -> tuple[int, str, float, float, float]:
     """The same of a PoseStamped in JSON. Raises ValueError."""
     pose = member(tree, "pose")
     position, turn = member(pose, "position"), member(pose, "orientation")
-    x, y = (_finite(member(position, axis)) for axis in "xy")
+    x, y = (_metres(member(position, axis)) for axis in "xy")
     return (*header_of(tree), x, y, yaw_deg(*(_finite(member(turn, part)) for part in "xyzw")))
 
 
@@ -210,4 +211,11 @@ def _finite(part: object) -> float:
     value = float(part) if isinstance(part, (int, float, str)) else math.nan
     if not math.isfinite(value):
         raise ValueError(f"{part} is no finite number")
+    return value
+
+
+def _metres(part: object) -> float:
+    value = _finite(part)
+    if abs(value) > MAX_METRES:
+        raise ValueError(f"no place is beyond {MAX_METRES:g} m, and {part} is")
     return value

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -34,6 +34,7 @@ class Follow(MotionLeaf):
     """
 
     PATIENCE_S = {"bumper": 6.0}  # whom it met walks on
+    DEVICES: ClassVar = ("laser",)
     INPUT_PORTS = {
         "target": Port(str, False, "whom: what is as narrow as a person, or anything", "person", choices=tuple(WIDEST_M)),
         "distance_m": Port(float, False, "distance kept, from the robot's middle to the target's near side", 1.5, unit="m", ge=0.5, le=8.0),
@@ -44,8 +45,8 @@ class Follow(MotionLeaf):
 
     def begin(self, robot: Robot) -> Status | None:
         """Look first; nothing moves before somebody does."""
-        if robot.platform.devices.laser is None:
-            return self.fail("no-device", "the platform has no laser")
+        if lack := self.lacks(robot.platform.devices):
+            return self.fail("no-device", lack)
         self._skill = Skill(float(self.get_input("distance_m")), self.max_speed_mps(robot), self.now_s())
         self._scan_s = self._next_post_s = -math.inf
         self._found_s: float | None = None

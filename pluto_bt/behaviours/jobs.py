@@ -23,6 +23,8 @@ AT_REST: Final = (MotionStatus.AT_REST, MotionStatus.AT_REST_WITH_RECTANGLE)
 class JobLeaf(MotionLeaf):
     """Orders a job and watches it. After a pause it goes on where it was, with what it has seen and explored."""
 
+    DEVICES: ClassVar = ("laser",)
+
     def order(self, robot: Robot) -> tuple[MotionCommand, Pair, Pair]:
         """(cmdFlags, position, velocity) of the command."""
         raise NotImplementedError

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from py_trees.common import Status
 from py_trees.ports import BehaviourWithPorts, PortInformation
 
 from pluto_bt.behaviours.robot import Robot
+from pluto_bt.maps.platform import Devices
 from pluto_bt.runtime.clock import MissionClock
 
 NO_PORTS: Final[dict[str, PortInformation]] = {}
@@ -15,6 +16,15 @@ NO_PORTS: Final[dict[str, PortInformation]] = {}
 
 class Leaf(BehaviourWithPorts):
     """A leaf with a robot. `reason` holds the word of the last failure (`pluto_bt.behaviours.reasons`), "" else."""
+
+    DEVICES: ClassVar[tuple[str, ...]] = ()  # it needs one of these (names of `Devices`), unless its port `optional` is true
+
+    @classmethod
+    def lacks(cls, devices: Devices) -> str:
+        """The sentence for a robot that has none of the devices this leaf needs; "" if it has one."""
+        if not cls.DEVICES or any(getattr(devices, name) is not None for name in cls.DEVICES):
+            return ""
+        return f"the platform has {'neither ' if len(cls.DEVICES) > 1 else 'no '}{' nor '.join(cls.DEVICES)}"
 
     def __init__(self, name: str) -> None:
         super().__init__(name)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -124,6 +124,7 @@ class SweepWrist(WristTour):
     """Sweeps the laser to both sides and down to the ground, `rounds` times; does not touch the wheels. Among people it mostly looks ahead: where
     the laser did not look just now somebody may be, and the stop filter lets the robot creep there at most."""
 
+    DEVICES: ClassVar = ("wrist",)
     INPUT_PORTS = {
         "pan_deg": Port(float, False, "how far to either side; 0 = not at all", 40.0, unit="deg", ge=0.0, le=180.0),
         "tilt_deg": Port(float, False, "how far down; 0 = not at all", 10.0, unit="deg", ge=0.0, le=90.0),
@@ -156,7 +157,7 @@ class SweepWrist(WristTour):
             return self.fail("not-connected", "no robot")
         if robot.platform.devices.wrist is None:
             if not self.get_input("optional"):
-                return self.fail("no-device", "the platform has no wrist")
+                return self.fail("no-device", self.lacks(robot.platform.devices))
             return self.wait("no wrist") if rounds < 0 else self.succeed("no wrist")
         if self._rounds == rounds:
             return self.succeed(f"{rounds} rounds")

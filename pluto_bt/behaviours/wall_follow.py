@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -27,6 +27,7 @@ class WallFollow(MotionLeaf):
     Goes round inner and outer corners and past doors and gaps. Fails with `no-wall` if there is none in reach, with `wall-lost` if it goes away.
     """
 
+    DEVICES: ClassVar = ("laser", "sonar")
     INPUT_PORTS = {
         "side": Port(str, False, "where the wall is", "left", choices=tuple(SIDES)),
         "distance_m": Port(float, False, "between camera and wall; 0 = the platform's", 0.0, unit="m", ge=0.0, le=5.0),
@@ -37,9 +38,8 @@ class WallFollow(MotionLeaf):
 
     def begin(self, robot: Robot) -> Status | None:
         """Post the command; avoidance does the rest. `force[1..2]` carry distance and side."""
-        devices = robot.platform.devices
-        if devices.laser is None and devices.sonar is None:
-            return self.fail("no-device", "the platform has neither laser nor sonar")
+        if lack := self.lacks(robot.platform.devices):
+            return self.fail("no-device", lack)
         self._side = SIDES[self.get_input("side")]
         self._length_m, self._from_m, self._way_m = float(self.get_input("length_m")), math.inf, 0.0
         self._way = WayDriven(robot)

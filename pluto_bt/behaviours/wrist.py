@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 
@@ -19,6 +19,7 @@ THERE_RAD: Final = math.radians(1.0)
 class PointWrist(Leaf):
     """Turns the wrist; SUCCESS when both axes are within 1° of the target. Does not touch the wheels."""
 
+    DEVICES: ClassVar = ("wrist",)
     INPUT_PORTS = {
         "pan_deg": Port(float, False, "to the left positive", 0.0, unit="deg"),
         "tilt_deg": Port(float, False, "down positive", 0.0, unit="deg"),
@@ -54,7 +55,7 @@ class PointWrist(Leaf):
     def _send(self, robot: Robot, target: tuple[float, float]) -> Status:
         wrist = robot.platform.devices.wrist
         if wrist is None:
-            return self.fail("no-device", "the platform has no wrist")
+            return self.fail("no-device", self.lacks(robot.platform.devices))
         pan_limit, tilt_limit = math.radians(wrist.pan_limit_deg), math.radians(wrist.tilt_limit_deg)
         if not (abs(target[0]) <= pan_limit and abs(target[1]) <= tilt_limit):
             return self.fail("bad-command", f"beyond the wrist's limits of {wrist.pan_limit_deg:g} and {wrist.tilt_limit_deg:g} deg")

@@ -30,7 +30,8 @@ def draw_box(path: str, box: Box, world: World, driven: Driven) -> None:
     figure = Figure(figsize=(width, height + sum(heights)), dpi=120, layout="constrained")
     rows = figure.subplots(1 + len(heights), 1, gridspec_kw={"height_ratios": [height, *heights]}, squeeze=False)[:, 0]
     draw_map(rows[0], world, driven)
-    rows[0].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=8, labelcolor=INK)
+    if rows[0].get_legend_handles_labels()[1]:
+        rows[0].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=8, labelcolor=INK)
     below = iter(rows[1:])
     for found, unit, factor in curves:
         if found:

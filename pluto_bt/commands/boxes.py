@@ -82,6 +82,6 @@ def read_time(text: str | None, option: str, faults: Faults) -> float | None:
         time_s = -1.0
     if not 0.0 <= time_s < 1e9:
         what = f"{option} takes seconds of the run"
-        faults.error(Place(f"{option} {text}"), "bad-value", what, expected="a number, 0 or more", found=text or "nothing")
+        faults.error(Place(f"{option} {text}"), "bad-value", what, expected="a number from 0 to below 1e9", found=text or "nothing")
         return None
     return time_s

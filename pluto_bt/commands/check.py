@@ -41,7 +41,7 @@ def _parser() -> Parser:
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--format", choices=tuple(FORMATS), default="text")
     parser.add_argument("--world", metavar="W", help="drive the legs of the missions in thought through this world")
-    parser.add_argument("--platform", metavar="P", help="with --world: the robot that starts in it")
+    parser.add_argument("--platform", metavar="P", help="the robot that is to run the missions (default: the world's)")
     parser.add_argument("--tree", metavar="ID", help="the tree to check, if not the main one")
     parser.add_argument("--port", metavar="NAME=VALUE", action="append", default=[], help="an input of the main tree; may be repeated")
     parser.add_argument("--model", metavar="FILE", action="append", default=[], help="a file whose TreeNodesModel describes nodes of other systems")
@@ -51,11 +51,13 @@ def _parser() -> Parser:
 
 def _check_options(args: argparse.Namespace, faults: Faults) -> tuple[World | None, RobotFile | None]:
     """The faults of what serves all the files: plugins, and the world and the robot to check against."""
-    from pluto_bt.commands.inputs import check_world
+    from pluto_bt.commands.inputs import check_world, read_robot
     from pluto_bt.commands.plugins import load_plugins
 
     load_plugins(args.plugin, faults)
-    return check_world(args.world, args.platform, faults) if args.world is not None else (None, None)
+    if args.world is not None:
+        return check_world(args.world, args.platform, faults)
+    return None, None if args.platform is None else read_robot(args.platform, faults)
 
 
 def _check(name: str, args: argparse.Namespace, world: World | None, robot: RobotFile | None, faults: Faults) -> list[LegTold]:
@@ -73,10 +75,10 @@ def _check(name: str, args: argparse.Namespace, world: World | None, robot: Robo
         from pluto_bt.commands.missions import check_mission_file
 
         examined = check_mission_file(name, args.tree, args.port, args.model, faults)
-        if examined is not None and examined.plan is not None and world is not None:
-            from pluto_bt.commands.mission_in_world import check_in_world
+        if examined is not None and examined.plan is not None and (world is not None or robot is not None):
+            from pluto_bt.commands.mission_in_world import check_on_robot
 
-            return check_in_world(examined.plan, world, robot, faults)
+            return check_on_robot(examined.plan, world, robot, faults)
     return []
 
 

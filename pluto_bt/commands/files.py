@@ -6,7 +6,7 @@ import os
 from importlib.util import find_spec
 from pathlib import Path
 
-from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.source import Faults, Place, nearest_word
 
 SHIPPED = {"mission": ("missions", (".xml",)), "world": ("sim/worlds", (".xml", ".yaml", ".map"))}
 
@@ -28,10 +28,19 @@ def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) 
         if os.path.isfile(candidate):  # unlike Path.is_file, False for whatever cannot be a name
             return candidate
     found = "a folder" if os.path.isdir(name) else "no ordinary file" if os.path.lexists(name) else name or "nothing"
+    other = next((word for word in SHIPPED if word != kind and Path(name).name in shipped_names(word)), "")
+    found = f"a shipped {other}" if other and not os.path.lexists(name) else found
     known = shipped_names(kind)
     faults.error(Place(name or f'{kind} ""'), "no-such-file", f"no such {kind} file", expected=f"a path, or a shipped {kind}: {', '.join(known)}",
-                 found=found, mend=did_you_mean(Path(name).name, known))  # fmt: skip
+                 found=found, mend=nearest_file(name, known))  # fmt: skip
     return None
+
+
+def nearest_file(name: str, known: list[str]) -> str:
+    """'did you mean "yard.xml"?', by the names without their endings, which would make every file a little like every other."""
+    stems = {Path(one).stem: one for one in reversed(known)}
+    near = nearest_word(Path(name).stem, stems)
+    return f'did you mean "{stems[near]}"?' if near else ""
 
 
 def find_shipped(name: str) -> Path | None:

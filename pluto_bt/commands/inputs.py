@@ -11,13 +11,14 @@ from pluto_bt.commands.files import find_file
 from pluto_bt.commands.missions import examine_file
 from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
 from pluto_bt.commands.plugins import load_plugins
-from pluto_bt.commands.world_checks import check_script, check_start, in_file
+from pluto_bt.commands.world_checks import check_faults, check_script, check_start, in_file
 from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
 from pluto_bt.modules.live_parameters import value_of
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file, overlay_names
 from pluto_bt.runtime.parameters import shown
 from pluto_bt.source import Fault, Faults, InputError, Place
+from pluto_bt.trees.checks.devices import check_devices
 from pluto_bt.trees.checks.world_words import check_world_words
 
 DEFAULT_WORLD, DEFAULT_PLATFORM = "yard.xml", "atrv2"
@@ -107,8 +108,12 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
         if robot is not None and start is not None:
             check_start(world, robot, start, request.start, faults)
         check_script(world, faults)
+        if robot is not None:
+            check_faults(world, robot, faults)
         if examined is not None and examined.plan is not None:
             faults.extend(check_world_words(examined.plan, world, a_priori or world, may_fail=True))
+    if robot is not None and examined is not None and examined.plan is not None:
+        faults.extend(check_devices(examined.plan, robot.devices, robot.name, may_fail=True))
     faults.raise_errors()
     assert mission_path is not None and world is not None and robot is not None and start is not None  # each None came with a fault
     seed = world.seed if seed is None else seed
@@ -127,7 +132,14 @@ def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World 
     if robot is not None and world.robot.pose is not None:
         check_start(world, robot, world.robot.pose, None, faults)
     check_script(world, faults)
+    if robot is not None:
+        check_faults(world, robot, faults)
     return world, robot
+
+
+def read_robot(platform: str, faults: Faults) -> RobotFile | None:
+    """A platform alone; None with its faults."""
+    return _robot(platform, None, (), faults, None)
 
 
 def _world(name: str, faults: Faults, beside: Path | None) -> World | None:
@@ -161,4 +173,4 @@ def _platform_name(asked: str | None, world: World | None, beside: Path | None) 
     return next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
 
 
-__all__ = ["Inputs", "Request", "add_input_options", "check_world", "read_inputs"]
+__all__ = ["Inputs", "Request", "add_input_options", "check_world", "read_inputs", "read_robot"]

@@ -5,6 +5,7 @@ Uses matplotlib without pyplot, which would cost a second and keep global state.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 INK, WALL, PATH, GOAL, CONTACT, ACTOR = "#22262e", "#4a5361", "#1f6feb", "#2da44e", "#d1242f", "#bf8700"
 AREA_COLOURS = {"named": "#8250df", "map": "#57606a", "forbidden": "#d1242f", "restrictive": "#bf8700", "one-way": "#0969da", "sector": "#57606a"}
+LETTERS_PER_IN = 12.0  # of a title
 OUTLINES = 24  # outlines of the robot drawn along the path
 
 
@@ -75,7 +77,8 @@ def draw_map(axes: Any, world: World, driven: Driven) -> None:
     for number, (x_m, y_m) in enumerate(driven.contacts):
         axes.plot(x_m, y_m, "x", color=CONTACT, markersize=10, markeredgewidth=2.5, zorder=6, label="" if number else "contact")
     axes.set(xlim=(x_min, x_max), ylim=(y_min, y_max), aspect="equal", xlabel="x (m)", ylabel="y (m)")
-    axes.set_title(driven.title, fontsize=10, color=INK)
+    letters = round(LETTERS_PER_IN * axes.figure.get_figwidth())
+    axes.set_title(textwrap.fill(driven.title, letters), fontsize=10, color=INK)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
 

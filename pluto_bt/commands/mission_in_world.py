@@ -6,15 +6,19 @@ from pluto_bt.commands.legs_in_world import LegCheck, LegTold
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.source import Faults
+from pluto_bt.trees.checks.devices import check_devices
 from pluto_bt.trees.checks.legs import Course
-from pluto_bt.trees.checks.world_words import check_world_words
+from pluto_bt.trees.checks.world_words import check_world_words, goals_of
 from pluto_bt.trees.loader.expand import Plan
 
 
-def check_in_world(root: Plan, world: World, robot: RobotFile | None, faults: Faults) -> list[LegTold]:
-    """The faults of a mission in a world, and what each of its legs comes to; without a robot (it has faults of its own) no legs."""
-    faults.extend(check_world_words(root, world, world))
-    if robot is None:
+def check_on_robot(root: Plan, world: World | None, robot: RobotFile | None, faults: Faults) -> list[LegTold]:
+    """The faults of a mission on a robot and in a world, and what each of its legs comes to; none without both (or where they are at fault)."""
+    if robot is not None:
+        faults.extend(check_devices(root, robot.devices, robot.name))
+    if world is not None:
+        faults.extend(check_world_words(root, world, world))
+    if robot is None or world is None:
         return []
     x, y, _ = world.robot.pose or (0.0, 0.0, 0.0)
-    return LegCheck(world, robot, faults).run(Course(root.walk(), (x, y)).legs)
+    return LegCheck(world, robot, faults).run(Course(root.walk(), (x, y), goals_of(world)).legs)

@@ -19,8 +19,10 @@ def main(argv: list[str]) -> int:
 
     file = read_mcap(args.file)
     to = Path(args.output or args.file)
-    for _ in file.lines():
-        pass  # to learn whether it is whole
+    readable = sum(1 for _ in file.lines())  # reads it all, so that it is known whether it is whole
+    if not readable and not file.is_whole:
+        print(f"pluto repair: {args.file} holds no message that could be saved; it is left as it is", file=sys.stderr)
+        return 1
     if file.is_whole and args.output is None:
         print(f"{args.file} is whole already")
         return 0

@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pluto_bt.commands.files import find_file
 from pluto_bt.commands.options import Parser
 from pluto_bt.source import Faults, PlutoError
 
@@ -99,13 +100,22 @@ def execute(box: Box, mission: str | None = None) -> int:
     return 0
 
 
+def _rules(name: str) -> Path:
+    """A file with contracts, as given or among the shipped missions. Raises: InputError."""
+    faults = Faults()
+    path = find_file("mission", name, faults)
+    faults.raise_errors()
+    assert path is not None  # else there was a fault
+    return path
+
+
 def contracts(box: Box, mission: str | None) -> int:
     """The contracts over the run."""
     from pluto_bt.contract_report import check_box
     from pluto_bt.trees.loader.contracts import contracts_in
 
     with box.unpacked() as files:
-        path = Path(mission) if mission is not None else files / box.run.mission
+        path = _rules(mission) if mission is not None else files / box.run.mission
         found = contracts_in(path, mission or box.run.mission)
     if not found:
         print(f"{mission or box.run.mission} has no contracts")

@@ -28,14 +28,15 @@ def main(argv: list[str]) -> int:
     if args.file is None:
         return _live(args.gateway, at_s, args.json)
     from pluto_bt.commands.boxes import read_box
-    from pluto_bt.trees.why_box import why_at
+    from pluto_bt.trees.why_box import end_s, why_at
 
     box = read_box(args.file)
     if not len(box):
         print("no tick was recorded", file=sys.stderr)
         return 1
-    answer = why_at(box, at_s)
-    _print(answer.is_moving, [cause._asdict() for cause in answer.causes], args.json)
+    answer, over_s = why_at(box, at_s), end_s(box)
+    ended = "" if over_s is None or (at_s is not None and at_s < over_s) else f" when the run ended, at {over_s:.1f} s"
+    _print(answer.is_moving, [cause._asdict() for cause in answer.causes], args.json, ended)
     return 0
 
 
@@ -55,10 +56,12 @@ def _live(address: str, at_s: float | None, as_json: bool) -> int:
     return 0
 
 
-def _print(is_moving: bool, causes: list[dict[str, Any]], as_json: bool) -> None:
+def _print(is_moving: bool, causes: list[dict[str, Any]], as_json: bool, ended: str = "") -> None:
+    """`ended`: the words for an answer that speaks of the end of a run that is over."""
     if as_json:
         print(json.dumps({"moving": is_moving, "causes": causes}, ensure_ascii=False))
         return
     from pluto_bt.gateway.why import lines
 
-    print("\n".join(lines(is_moving, causes)))
+    verdict, *told = lines(is_moving, causes)
+    print("\n".join([verdict + ended, *told]))

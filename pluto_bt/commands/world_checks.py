@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pluto_bt.maps.fault_table import SENSORS
 from pluto_bt.maps.placement import placed_outline, what_stands_at
 from pluto_bt.maps.world import At, FaultAction, SetTopic, When, World
 from pluto_bt.modules.robot_file import RobotFile
@@ -26,6 +27,27 @@ def check_script(world: World, faults: Faults) -> None:
     """`<set>` writes only topics whose writer is `world`, with true or false; a fault hits a module that there is."""
     for entry in world.script:
         _check_actions(entry, faults)
+
+
+def check_faults(world: World, robot: RobotFile, faults: Faults) -> None:
+    """Warn of scripted faults that mean nothing on this robot; it need not be the one that the world was made for."""
+    for action in (action for entry in world.script for action in entry.actions):
+        if not isinstance(action, FaultAction) or action.device not in SENSORS:
+            continue
+        names = ("imu", "dmu") if action.device == "imu" else (action.device,)
+        if all(getattr(robot.devices, name) is None for name in names):
+            what = f'this fault changes nothing: "{robot.name}" has no {action.device}'
+            faults.warning(action.place, "no-device", what, expected=f"a robot with it: {action.device}", found=robot.name)
+        elif action.beams is not None and action.beams[1] >= (count := _rays(robot, action.device)):
+            what, found = f"the {action.device} has {count} beams", f"{action.beams[0]}-{action.beams[1]}"
+            faults.warning(action.place, "no-beam", what, expected=f"beams from 0 to {count - 1}", found=found)
+
+
+def _rays(robot: RobotFile, device: str) -> int:
+    laser, sonar = robot.devices.laser, robot.devices.sonar
+    if device == "laser":
+        return laser.beams if laser is not None else 0
+    return len(sonar.transducers) if sonar is not None else 0
 
 
 def in_file(place: Place, world: World) -> Place:

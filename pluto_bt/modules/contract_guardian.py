@@ -41,4 +41,4 @@ class ContractGuardian:
             return
         self._context.say("error" if then == "ask" else "warning", CONTRACT, "executive", breach.text)
         if then == "ask":
-            system.operator_stop(f'contract "{breach.contract.name}"')
+            system.operator_stop(f'broken contract "{breach.contract.name}"')

@@ -153,7 +153,7 @@ def _read(text: str) -> Any:
     try:
         return json.loads(text)
     except (ValueError, RecursionError):  # no JSON, or some thousand brackets
-        return text
+        return float(text) if text.strip().lower().lstrip("+-") in ("nan", "inf", "infinity") else text  # numbers, though none that will do
 
 
 def describe(kind: type[msgspec.Struct], prefix: str = "") -> tuple[Parameter, ...]:

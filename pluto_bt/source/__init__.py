@@ -5,7 +5,10 @@ every fault names file, line, column, what was expected, what was found and how 
 It imports nothing of the project.
 """
 
-from pluto_bt.source.faults import Fault, Faults, InputError, Place, PlutoError, did_you_mean
+from pluto_bt.source.faults import Fault, Faults, InputError, Place, PlutoError, did_you_mean, nearest_word
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 
-__all__ = ["Fault", "Faults", "InputError", "Place", "PlutoError", "XmlAttribute", "XmlElement", "did_you_mean", "read_xml", "read_xml_file"]
+__all__ = [
+    "Fault", "Faults", "InputError", "Place", "PlutoError", "XmlAttribute", "XmlElement",
+    "did_you_mean", "nearest_word", "read_xml", "read_xml_file",
+]  # fmt: skip

@@ -148,11 +148,17 @@ def fail(place: Place, code: str, message: str, *, expected: str = "", found: st
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
     """'did you mean "goal"?' for the nearest known word, or "" if none is near."""
+    near = nearest_word(word, known)
+    return f'did you mean "{near}"?' if near else ""
+
+
+def nearest_word(word: str, known: Iterable[str]) -> str:
+    """The known word that a misspelt one most likely means, or "" if none is near."""
     if len(word) > 100:
         return ""
     by_lower = {name.lower(): name for name in known}
     near = difflib.get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
-    return f'did you mean "{by_lower[near[0]]}"?' if near else ""
+    return by_lower[near[0]] if near else ""
 
 
 def _quotable(text: str, most: int = 600) -> str:

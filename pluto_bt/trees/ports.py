@@ -7,12 +7,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from pluto_bt.maps.numbers import MAX_METRES
 from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.values import ANYTHING, Kind, PortProblem
 
 Direction = Literal["in", "out", "inout"]
 
-__all__ = ["Direction", "PortModel", "PortProblem", "models_of_class", "range_problem"]
+__all__ = ["Direction", "PortModel", "PortProblem", "is_beyond", "models_of_class", "range_problem"]
 
 
 @dataclass(frozen=True)
@@ -61,11 +62,18 @@ def range_problem(model: PortModel, value: Any) -> str:
             return "not a number"
         if math.isinf(number) and model.unit:  # what has a unit is a quantity of the world
             return "not finite"
+        if model.unit == "m" and abs(number) > MAX_METRES:
+            return f"no place or distance is beyond {MAX_METRES:g} m"
         if model.ge is not None and number < model.ge:
             return f"{number:g} is below {model.ge:g}"
         if model.le is not None and number > model.le:
             return f"{number:g} is above {model.le:g}"
     return ""
+
+
+def is_beyond(value: Any) -> bool:
+    """True for coordinates that no world has."""
+    return any(abs(number) > MAX_METRES for number in _numbers_in(value))
 
 
 def _numbers_in(value: Any) -> Iterable[float]:

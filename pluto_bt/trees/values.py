@@ -24,6 +24,9 @@ _INTEGER = re.compile(r"-?\d+")
 REAL = re.compile(r"-?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)")
 
 
+REALS: Final = ("double", "float")  # types of a model that take digits for a real number
+
+
 class PortProblem(Exception):  # noqa: N818  it is no error of the program; it becomes a StepError or a fault with a place
     """A value that is missing, does not fit, or may not be written; the text is a plain sentence."""
 
@@ -118,6 +121,12 @@ def literal_value(text: str) -> int | float | str:
         number = int(text)
         return number if INT64_RANGE[0] <= number <= INT64_RANGE[1] else float(text)
     return float(text) if REAL.fullmatch(text) and "inf" not in text else text
+
+
+def declared_value(text: str, type_name: str) -> int | float | str:
+    """`literal_value`, but that digits are a real number where a model declares one (`type_name`)."""
+    value = literal_value(text)
+    return float(value) if type_name in REALS and isinstance(value, int) else value
 
 
 def _cast_int(low: int, high: int) -> Callable[[Any], int]:

@@ -16,6 +16,11 @@ def why_at(box: Box, t_s: float | None = None) -> Answer:
     return Answer(False) if number < 0 else explain(view_of(box, box.now(number)))
 
 
+def end_s(box: Box) -> float | None:
+    """When the run was over; None if the recording breaks off before."""
+    return box.tick(_last(box)).t_s if box.file.is_whole else None
+
+
 def view_of(box: Box, now: Now) -> View:
     """What `why` looks at."""
     trees = now.at_work()

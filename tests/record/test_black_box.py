@@ -132,6 +132,9 @@ def test_the_commands_tell_a_run(scenario: Play, mission: str, tmp_path: Path, c
     assert "cut short" in capsys.readouterr().err
     assert main(["repair", str(file)]) == 0 and main(["info", str(file)]) == 0
     assert "cut short" not in capsys.readouterr().out
+    file.write_bytes(file.read_bytes()[:50])
+    assert main(["repair", str(file)]) == 1 and "left as it is" in capsys.readouterr().err
+    assert len(file.read_bytes()) == 50
 
 
 def test_a_file_that_is_no_black_box_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

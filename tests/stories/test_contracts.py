@@ -15,7 +15,8 @@ from pluto_bt.trees.contracts import ContractWatch
 from pluto_bt.trees.loader.contracts import contracts_in
 
 EAST = """{}<BehaviorTree ID="m"><Sequence>
-  <Script code="far := 0"/><GoTo goal="5;3.5"/><Script code="far := 1"/></Sequence></BehaviorTree></root>"""
+  <Script code="far := 0"/><GoTo goal="5;3.5"/><Script code="far := 1"/>
+  <Script code="late := 1" _skipIf="far == 1"/></Sequence></BehaviorTree></root>"""
 ROOT = '<root BTCPP_format="4">'
 NEAR = '<Contract name="stays near" always="@Localization_Pose_x &lt; 4" {}/>'
 
@@ -54,12 +55,19 @@ def test_asked_the_robot_waits_for_an_operator(scenario: Play, tmp_path: Path) -
     assert 4.0 < run.final_pose[0] < 4.7 and 'contract "stays near"' in run.runner.system.latch.held.text
 
 
+def test_asked_of_nobody_the_run_ends(scenario: Play, tmp_path: Path) -> None:
+    run = scenario("yard.xml", mission=mission(tmp_path, NEAR.format('then="ask"')), platform="pioneer", max_time_s=None)
+    assert (run.result, run.reason, run.exit_code) == ("STOPPED", "held", 1) and run.sim_time_s < 20.0
+    assert run.text.startswith('broken contract "stays near" stopped the robot, and nobody is there') and "--gateway" in run.text
+    assert 4.0 < run.final_pose[0] < 4.7
+
+
 def test_it_is_judged_only_when_it_says_and_only_what_is_known(scenario: Play, tmp_path: Path) -> None:
-    contract = '<Contract always="@Localization_Pose_x &lt; 4" when="far == 1" then="tell"/><Contract always="nobody_writes_this == 1"/>'
+    contract = '<Contract always="@Localization_Pose_x &lt; 4" when="far == 1" then="tell"/><Contract always="late == 1"/>'
     run = scenario("yard.xml", mission=mission(tmp_path, contract), platform="pioneer")
     first, second = run.contracts
     assert run.result == "SUCCESS" and first["breaches"][0]["since_s"] == pytest.approx(run.sim_time_s, abs=1.0)
-    assert (second["verdict"], second["name"]) == ("not judged", "contract 2") and "nobody_writes_this" in second["problem"]
+    assert (second["verdict"], second["name"]) == ("not judged", "contract 2") and "late" in second["problem"]
 
 
 def test_over_a_recorded_run_with_its_own_contracts_or_with_others(scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -86,9 +94,9 @@ FAULTS = {
     "<Contract/>": ("does not say what must hold", 1),
     '<Contract always="a =="/>': ("script of always", 1),
     '<Contract always="a := 3"/>': ("only looks", 1),
-    '<Contract always="(a = 3) > 2"/>': ("only looks", 1),
-    '<Contract always="a" within_s="soon"/>': ("within_s takes seconds", 1),
-    '<Contract always="a" then="halt"/>': ('cannot "halt"', 1),
+    '<Contract always="(far = 3) > 2"/>': ("only looks", 1),
+    '<Contract always="far" within_s="soon"/>': ("within_s takes seconds", 1),
+    '<Contract always="far" then="halt"/>': ('cannot "halt"', 1),
     '<Contract alwys="a"/>': ('unknown attribute "alwys"', 2),
 }
 
@@ -101,6 +109,15 @@ def test_a_faulty_contract_is_refused_with_its_place(text: str, tmp_path: Path, 
     faults: list[Fault] = [fault for fault in check_mission(EAST.format(ROOT + "\n  " + text)) if fault.severity == "error"]
     assert len(faults) == count and all(fault.line == 2 and fault.column >= 3 for fault in faults)
     assert any(words in fault.message for fault in faults)
+
+
+@pytest.mark.parametrize("always", ["@Localization_Pose_q &lt; 3", "nobody_writes_this == 1"])
+@pytest.mark.parametrize("attributes", ['always="{}"', 'always="1 == 1" when="{}"'])
+def test_a_contract_that_could_never_be_judged_is_refused(always: str, attributes: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = mission(tmp_path, f"<Contract {attributes.format(always)}/>")
+    assert main(["run", file]) == 2
+    told = capsys.readouterr().err
+    assert told.count("error: ") == 1 and f"m.xml:1:{(tmp_path / 'm.xml').read_text().index(always) + 1}: error: " in told
 
 
 def test_other_tools_pass_over_it_and_an_included_file_may_hold_it(tmp_path: Path) -> None:

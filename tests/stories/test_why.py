@@ -109,3 +109,6 @@ def test_the_command_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert main(["why", str(tmp_path / "a.mcap"), "--at", "2", "--json"]) == 0
     assert '"moving": true' in capsys.readouterr().out
     assert main(["why", str(tmp_path / "a.mcap"), "--at", "soon"]) == 2
+    capsys.readouterr()
+    assert main(["why", str(tmp_path / "a.mcap"), "--at", "300"]) == main(["why", str(tmp_path / "a.mcap")]) == 0
+    assert capsys.readouterr().out.count("not moving when the run ended, at ") == 2

@@ -353,8 +353,42 @@ def test_all_faults_are_told_though_an_included_file_is_missing() -> None:
 
 @pytest.mark.parametrize(("always", "faults"), [
     ("@Localization_Pose_x &lt; 30 &amp;&amp; n &lt; 3", []),
-    ("@Localization_Pose_q &lt; 30", ["4:28 warning unknown-topic"]),
-    ("m &lt; 30", ["4:28 warning unset-key"]),
+    ("@Localization_Pose_q &lt; 30", ["4:28 error unknown-topic"]),
+    ("m &lt; 30", ["4:28 error unset-key"]),
 ])  # fmt: skip
 def test_what_a_contract_looks_at_should_be_there_some_time(always: str, faults: list[str]) -> None:
     assert told('<Script code="n := 1"/>', f'<Contract name="c" always="{always}"/>') == faults
+
+
+MAIN_INPUTS = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree ID="M"><GoTo goal="{place}"/></BehaviorTree>
+<TreeNodesModel><SubTree ID="M"><input_port name="place" type="point"/>
+<input_port name="goals" type="points" default=""/></SubTree></TreeNodesModel></root>"""
+
+
+@pytest.mark.parametrize(("ports", "code", "words"), [
+    ({"plcae": "4;2"}, "unknown-input", 'did you mean "place"'),
+    ({"place": "4;x"}, "bad-input", "expected x;y"),
+    ({"place": "1e12;3"}, "bad-input", "beyond 1e+06 m"),
+    ({"place": "4;2", "goals": ""}, "bad-input", "no element"),
+    ({"place": "4;2", "goals": "1,2;1e7,2"}, "bad-input", "beyond 1e+06 m"),
+])  # fmt: skip
+def test_one_slip_in_an_input_is_one_fault(ports: dict[str, str], code: str, words: str) -> None:
+    (fault,) = check_mission(MAIN_INPUTS, ports=ports)
+    assert fault.code == code and fault.file.startswith("--port") and words in fault.mend
+    assert check_mission(MAIN_INPUTS, ports={"place": "4;2"}) == ()
+
+
+@pytest.mark.parametrize("leaf", ['<GoTo goal="{}"/>', '<NavigateTo goal="{}"/>', '<NavigateTo goal="0;map;{};0;0;0;0;1"/>'])
+def test_no_goal_lies_beyond_what_a_world_can_be(leaf: str) -> None:
+    assert told(leaf.format("999999;-3")) == []
+    (fault,) = told(leaf.format("1e12;-3"))
+    assert fault.startswith("2:") and " error " in fault
+
+
+@pytest.mark.parametrize(("text", "faults"), [
+    ("n is {n}", ["2:17 warning braces-in-text"]),
+    ("json:{}", []),
+    ("a {} b", []),
+])  # fmt: skip
+def test_an_entry_inside_a_text_is_no_entry(text: str, faults: list[str]) -> None:
+    assert told(f'<Say text="{text}"/>') == faults

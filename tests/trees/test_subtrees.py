@@ -6,7 +6,8 @@ from typing import Any
 
 import pytest
 
-from pluto_bt.trees import MissionError, TickError
+from pluto_bt.source import Fault
+from pluto_bt.trees import MissionError, TickError, check_mission
 from tests.trees.harness import Bench
 
 SCOPES = [
@@ -151,3 +152,22 @@ def test_two_kinds_on_one_key_are_refused(body: str, trees: str, message: str) -
     with pytest.raises(MissionError) as caught:
         Bench(body, trees)
     assert caught.value.faults[0].message.startswith(message)
+
+
+PACED = '<BehaviorTree ID="B"><RateController hz="{hz}"><AlwaysSuccess/></RateController></BehaviorTree>'
+
+
+def _faults_of_digits(declared: str) -> tuple[Fault, ...]:
+    model = f'<TreeNodesModel><SubTree ID="B"><input_port name="hz" type="{declared}"/></SubTree></TreeNodesModel>' if declared else ""
+    main = '<BehaviorTree ID="A">\n<SubTree ID="B" hz="40"/></BehaviorTree>\n'
+    return check_mission(f'<root BTCPP_format="4" main_tree_to_execute="A">{main}{PACED}{model}</root>')
+
+
+@pytest.mark.parametrize("declared", ["double", "float"])
+def test_digits_are_a_real_number_where_the_model_declares_one(declared: str) -> None:
+    assert _faults_of_digits(declared) == ()
+
+
+def test_a_clash_is_told_at_the_literal_that_makes_it() -> None:
+    (fault,) = _faults_of_digits("")
+    assert (fault.line, fault.code) == (2, "type-clash") and "<text>:3 needs double" in fault.message and '"40.0"' in fault.mend

@@ -29,11 +29,11 @@ STATES = {  # sub-shell → the topics that its `state` shows
 }
 MODULES = ("sick", "wrist", "dmu", "imu", "compass", "gps", "arm", "pose", "slam")  # sub-shells that are modules of the same name
 
-X, Y, DEG = number("X", "m"), number("Y", "m"), number("DEG", "°")
+X, Y, DEG = number("X", "m", low=-1e6, high=1e6), number("Y", "m", low=-1e6, high=1e6), number("DEG", "°")
 MPS, TOP_MPS, DPS = number("MPS", "m/s"), number("MPS", "m/s", 0.3, 0.01, 2.0), number("DPS", "°/s, to the left positive")
 FOR, FORCE = number("SECONDS", "s", 4.0, 0.0, 3600.0), number("FORCE", default=1.0, low=0.0)
 B, H = number("B", "m", low=0.0), number("H", "m", low=0.0)
-HOME = (number("X", "m", 0.0), number("Y", "m", 0.0), number("DEG", "°", 0.0))
+HOME = (number("X", "m", 0.0, -1e6, 1e6), number("Y", "m", 0.0, -1e6, 1e6), number("DEG", "°", 0.0))
 PAN, TILT, RATE = number("PAN", "°, to the left positive"), number("TILT", "°, down positive"), number("DPS", "°/s", None, 0.1)
 SWEEP = (number("PAN", "°", None, 0.0, 180.0), number("TILT", "°", None, 0.0, 90.0), whole("ROUNDS", None, 1, 1000))
 

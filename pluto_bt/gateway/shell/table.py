@@ -11,7 +11,7 @@ from pluto_bt.gateway.shell.driving import node
 from pluto_bt.gateway.shell.module_rows import MODULE_ROWS
 from pluto_bt.gateway.shell.row import Row
 
-X, Y, DEG = number("X", "m"), number("Y", "m"), number("DEG", "°")
+X, Y, DEG = number("X", "m", low=-1e6, high=1e6), number("Y", "m", low=-1e6, high=1e6), number("DEG", "°")
 A_TOPIC = "the name of a topic, or its beginning and *"
 TOPIC, TOPICS = word("TOPIC", A_TOPIC, "topic"), rest("TOPIC", A_TOPIC, "topic")
 MODULE, MODULE_OR_NONE = word("MODULE", "the name of a module", "module"), word("MODULE", "the name of a module, or nothing", "module", None)

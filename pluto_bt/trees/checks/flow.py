@@ -52,12 +52,15 @@ class Flow:
         self._visit(nodes[0], certain=True)
 
     def run_beside(self, scripts: Iterable[XmlAttribute]) -> None:
-        """Warn of scripts that look at the root entries all the time, where they name what is never written; to be called after `run`."""
-        root, self._is_closed = self._board.root, False
+        """Tell of contracts, which look at the root entries all the time, where they name what is never written: they would never be judged.
+
+        To be called after `run`.
+        """
+        root = self._board.root
         for use in (use for attribute in scripts for use in script_uses(attribute)):
             home = self._home(root, use.key)
             if home not in self._writers and not self._is_given(root, use.key):
-                self._tell(root, use, home)
+                self._tell(root, use, home, in_contract=True)
 
     def _visit(self, plan: Plan, certain: bool) -> None:
         certain = certain and not any(name in plan.element.attributes for name in GUARDS)
@@ -95,7 +98,7 @@ class Flow:
             return True
         return owner is self._board.root and (name in self._inputs or (key.startswith("@") and self._board.topics is None))
 
-    def _tell(self, scope: Scope, use: Use, home: Home) -> None:
+    def _tell(self, scope: Scope, use: Use, home: Home, *, in_contract: bool = False) -> None:
         place = use.place
         where = place.file, place.line, place.column
         if where in self._told:
@@ -110,7 +113,8 @@ class Flow:
             code, what = "unknown-topic", f'there is no topic and no entry "{use.key}"'
         elif use.how == "change":
             what = f'entry "{use.key}" does not exist, so nothing can be assigned to it'
-        report = self._report.late if use.fails and self._is_closed else self._report.warning
+        is_sure = self._is_closed or (code == "unknown-topic" and in_contract)  # a leaf of a user's may write entries, but no topics
+        report = self._report.late if use.fails and is_sure else self._report.warning
         report(place, code, what, expected="an entry that has a value", found=found, mend=self._mend(scope, use, later is not None))
 
     def _mend(self, scope: Scope, use: Use, is_late: bool) -> str:

@@ -7,6 +7,7 @@ list each element is a leg. The robot is taken to succeed: after a Fallback it s
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -49,7 +50,9 @@ class Leg:
 class Course:
     """One walk through a mission from a start (None: not known)."""
 
-    def __init__(self, nodes: list[Plan], start: Point | None) -> None:
+    def __init__(self, nodes: list[Plan], start: Point | None, places: Mapping[str, Point]) -> None:
+        """`places`: the goals of the map, by name."""
+        self._places = places
         self.legs: list[Leg] = []
         self._bound: dict[Home, str] = {}  # elements of the loops around the node that is looked at
         self._written = {home_key(one, use.key) for one in nodes for use in (*uses_before(one), *uses_after(one)) if use.how != "read"}
@@ -105,7 +108,7 @@ class Course:
         goals = self._goals(plan, port) if port is not None else []
         for goal in goals:
             self._add(plan, way, at, goal, plan.element.attributes[port.name].value_place if port is not None else plan.element.place)
-            at = goal if isinstance(goal, tuple) else None
+            at = goal if isinstance(goal, tuple) else self._places.get(goal)
         return at if goals else None
 
     def _add(self, plan: Plan, way: str, at: Point | None, goal: Point | str, place: Place) -> None:

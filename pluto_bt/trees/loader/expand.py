@@ -13,7 +13,7 @@ from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, NodeType, is_port_name
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.scopes import Board, Entry, Scope
-from pluto_bt.trees.values import SCRIPT, STRING, PortProblem, kind_of_value, literal_value, parse_bool
+from pluto_bt.trees.values import SCRIPT, STRING, PortProblem, declared_value, kind_of_value, parse_bool
 
 MAX_NODES: Final = 50_000
 MAX_DEPTH: Final = 256  # nodes inside one another, SubTrees counted
@@ -60,6 +60,7 @@ class Expansion:
         self._uid = 0
         self._subtree_paths: dict[str, Place] = {}
         self._declared_at: dict[int, Place] = {}
+        self._literals: dict[int, XmlAttribute] = {}  # entries whose kind comes from a literal on a SubTree tag
         self._by_models: set[int] = set()  # entries whose kind is only what the model of a foreign node says
         self._entries: list[Entry] = []  # keeps them alive, so that their ids stay theirs
         self.used: dict[str, None] = {}
@@ -150,15 +151,18 @@ class Expansion:
         values = {attribute.name: attribute.value for attribute in element.attributes.values() if is_port_name(attribute.name)}
         if not autoremap:
             self._add_defaults(element, tree_id, values)
-        literals = {}
+        model, literals = self._files.subtree_models.get(tree_id), {}
+        declared = model.ports if model is not None else {}
         for port, value in values.items():
             key = key_of(port, value) if value != "=" else None
             if key is None:
-                literals[port] = literal_value(value)
+                literals[port] = declared_value(value, declared[port].type_name if port in declared else "")
             else:
                 scope.remap[port] = key
         for port, literal in literals.items():
             scope.write(port, literal)  # before autoremap is switched on: a literal is always local
+            if port in element.attributes and (entry := scope.find(port)) is not None:
+                self._literals[id(entry)] = element.attributes[port]
         scope.autoremap = autoremap
         return scope
 
@@ -198,11 +202,15 @@ class Expansion:
                 self._type_clash(plan.node_type, attribute, port.name, key, entry, kind.name)
 
     def _type_clash(self, node_type: NodeType, attribute: XmlAttribute, port: str, key: str, entry: Entry, kind: str) -> None:
-        first = self._declared_at.get(id(entry))
+        first, literal = self._declared_at.get(id(entry)), self._literals.get(id(entry))
         where = f" since {first.file or '<text>'}:{first.line}" if first is not None else ""
         holds = entry.kind.name if entry.kind is not None else ""
         what = f'entry "{key}" holds {holds}{where}; port "{port}" needs {kind}'
         mend = "write the literal as the port needs it" if first is None and kind_of_value(entry.value) is not None else "use another entry"
+        if first is None and literal is not None:  # told where it stands, not in the tree that it is given to
+            at, attribute = attribute.value_place, literal
+            what = f'entry "{key}" holds {holds}, as this literal is read; port "{port}" at {at.file or "<text>"}:{at.line} needs {kind}'
+            mend = f'write "{literal.value}.0", or declare the port as {kind} in TreeNodesModel' if (holds, kind) == ("int", "double") else mend
         is_sure = node_type.make is not None and id(entry) not in self._by_models  # models are often careless about types
         tell = self._report.error if is_sure else self._report.warning
         tell(attribute.value_place, "type-clash", what, expected=kind, found=holds, mend=mend)

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pluto_bt.source import Place, did_you_mean
+from pluto_bt.maps.numbers import MAX_METRES
+from pluto_bt.source import Place, did_you_mean, nearest_word
 from pluto_bt.trees.loader.files import MissionFiles, Model, TreeSource
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
+from pluto_bt.trees.ports import is_beyond
 from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.scopes import EMPTY, Scope
-from pluto_bt.trees.values import BOOL, DOUBLE, INT, PortProblem, literal_value
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, Kind, PortProblem, declared_value
 
-REALS = ("double", "float")
+POINT, POINTS = kind_of_type(tuple[float, float]), kind_of_type(list[tuple[float, float]])
 # What a model may declare of an input, as `type`; other words are taken for C++ types that mean nothing here.
 DECLARED = {
     "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL,
-    "point": kind_of_type(tuple[float, float]), "points": kind_of_type(list[tuple[float, float]]),
+    "point": POINT, "points": POINTS,
 }  # fmt: skip
 
 
@@ -26,13 +28,14 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
     With `given` None nobody asked on a command line: inputs without a value are then left to the caller.
     """
     model = files.subtree_models.get(main.tree_id)
+    meant = set()  # inputs that were given, though wrongly perhaps: they are told once
     for name, text in (given or {}).items():
-        _check_name(name, model, main, report)
+        meant.add(_check_name(name, model, main, report))
         port = model.ports.get(name) if model is not None else None
         _write(root, name, text, port.type_name if port is not None else "", Place(f"--port {name}={text}"), report)
     for port in model.ports.values() if model is not None else ():
         entry = root.find(port.name)
-        if (entry is not None and entry.value is not EMPTY) or port.direction == "out":
+        if (entry is not None and entry.value is not EMPTY) or port.direction == "out" or port.name in meant:
             continue
         if port.default is not None:
             _write(root, port.name, port.default, port.type_name, port.element.attributes["default"].value_place, report)
@@ -43,28 +46,40 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
 
 
 def _write(root: Scope, name: str, text: str, type_name: str, place: Place, report: Report) -> None:
-    """Typed as a SubTree's literal is, but that digits for an input declared as a real number are one."""
+    """Typed as a SubTree's literal is."""
     kind = DECLARED.get(type_name)
     if kind is not None:
-        try:
-            kind.parse(text)
-        except ValueError as error:
+        problem = _problem(kind, text, is_given=place.file.startswith("--port"))
+        if problem:
             what = f'input "{name}" is declared as {type_name}; "{text}" is none'
-            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=str(error))
+            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=problem)
             return
     try:
-        value = literal_value(text)
-        root.write(name, float(value) if type_name in REALS and isinstance(value, int) else value)
+        root.write(name, declared_value(text, type_name))
     except PortProblem as problem:
         report.error(place, "bad-input", str(problem), expected="a value of the entry's kind", found=text)
 
 
-def _check_name(name: str, model: Model | None, main: TreeSource, report: Report) -> None:
+def _problem(kind: Kind, text: str, *, is_given: bool) -> str:
+    """Why a text is no value of a declared input, or "". A default may be an empty list; who gives one on a command line made a slip."""
+    try:
+        value = kind.parse(text)
+    except ValueError as error:
+        return str(error)
+    if is_given and value == []:
+        return "it has no element; leave it out to have the default, if there is one"
+    return f"no place is beyond {MAX_METRES:g} m" if kind in (POINT, POINTS) and is_beyond(value) else ""
+
+
+def _check_name(name: str, model: Model | None, main: TreeSource, report: Report) -> str:
+    """The input that is meant; a fault if it is misspelt, or there is none ("")."""
     known = list(model.ports) if model is not None else _keys_used(main)
-    if name not in known:
-        what = f'tree {main.tree_id!r} has no input "{name}"'
-        wanted = "one of: " + (", ".join(known) or "none")
-        report.error(Place(f"--port {name}"), "unknown-input", what, expected=wanted, found=name, mend=did_you_mean(name, known))
+    if name in known:
+        return name
+    what = f'tree {main.tree_id!r} has no input "{name}"'
+    wanted = "one of: " + (", ".join(known) or "none")
+    report.error(Place(f"--port {name}"), "unknown-input", what, expected=wanted, found=name, mend=did_you_mean(name, known))
+    return nearest_word(name, known)
 
 
 def _keys_used(main: TreeSource) -> list[str]:

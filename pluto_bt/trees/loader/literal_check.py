@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
+from typing import Final
+
 from pluto_bt.source.xml_reader import XmlAttribute
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.ports import PortModel, range_problem
 from pluto_bt.trees.script import ScriptSyntaxError, parse_script
-from pluto_bt.trees.values import SCRIPT, STATUS, trailing_text
+from pluto_bt.trees.values import SCRIPT, STATUS, STRING, trailing_text
+
+ENTRY_IN_TEXT: Final = re.compile(r"\{(@?[A-Za-z_]\w*)\}")
 
 
 def check_literal(attribute: XmlAttribute, port: PortModel, report: Report, *, builtin: bool) -> None:
@@ -29,9 +34,13 @@ def check_literal(attribute: XmlAttribute, port: PortModel, report: Report, *, b
     problem = range_problem(port, value)
     if problem:
         what = f'"{text}" is outside what port "{port.name}" allows'
-        report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=text)
+        report.error(attribute.value_place, "out-of-range", what, expected=port.form, found=text, mend=problem)
     elif rest := trailing_text(port.kind, text):
         _tell_rest(attribute, port, value, rest, report, builtin=builtin)
+    elif port.kind is STRING and (found := ENTRY_IN_TEXT.search(text)):
+        what = f"{found[0]} stands inside a text: only a whole port value is an entry"
+        mend = f"a Script can join texts: whole := '…' .. {found[1]}, then {port.name}=" + '"{whole}"'
+        report.warning(attribute.place_at(found.start()), "braces-in-text", what, expected="{key} alone, or a text", found=text, mend=mend)
 
 
 def check_script(attribute: XmlAttribute, report: Report) -> None:

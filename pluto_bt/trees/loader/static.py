@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pluto_bt.source import did_you_mean
+from pluto_bt.source import did_you_mean, nearest_word
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
 from pluto_bt.trees.controls.parallel import absolute_count
 from pluto_bt.trees.engine.conditions import CONDITIONS
@@ -148,8 +148,10 @@ class StaticCheck:
             if is_port_name(attribute.name) and not self._report.faults.is_full:
                 self._check_port(attribute, node_type)
         self._check_private(element)
+        unknown = [name for name in element.attributes if is_port_name(name) and name not in node_type.ports]
+        meant = {nearest_word(name, node_type.ports) for name in unknown}  # misspelt, which is told already
         for port in node_type.ports.values():
-            if port.required and port.default is None and port.name not in element.attributes:
+            if port.required and port.default is None and port.name not in element.attributes and port.name not in meant:
                 report = self._report.error if port.at_load else self._report.late
                 what = f'port "{port.name}" of <{node_type.name}> is missing'
                 report(element.place, "missing-port", what, expected=f'{port.name}="…": {port.form}', found="nothing")
