@@ -4,6 +4,7 @@ from __future__ import annotations
 
 BAD_COMMAND = "bad-command"
 BUMPER = "bumper"
+CHAIN_STOPPED = "chain-stopped"
 COMMAND_TIMEOUT = "command-timeout"
 ESTOP = "estop"
 EXECUTIVE_SILENT = "executive-silent"
@@ -31,6 +32,7 @@ WALKER = "walker"
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
     BUMPER: "a bumper is or was pressed; back off, release it, then send a new command",
+    CHAIN_STOPPED: "a link farther down the chain does not run: nothing reaches the base",
     COMMAND_TIMEOUT: "no new command came in time; a controlled stop",
     ESTOP: "the emergency stop is latched; release it, then command anew",
     EXECUTIVE_SILENT: "the executive has stopped working; nothing moves without it",
