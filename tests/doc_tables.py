@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -14,6 +15,7 @@ from pluto_bt.behaviours.reasons import REASONS, WAITING
 from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.codes import STATUS_ENUMS, code_name
 from pluto_bt.gateway.parse import _FROM_CONTENT
+from pluto_bt.gateway.proxies import PROXIES, Proxy
 from pluto_bt.gateway.requests import ELEMENTS
 from pluto_bt.gateway.shell.table import GENERAL, MODULE_ROWS
 from pluto_bt.maps import fault_table
@@ -241,6 +243,17 @@ def subshells() -> str:
     return table(("sub-shell", "command", "meaning"), ((f"`{row.shell}>`", f"`{row.usage}`", row.doc) for row in rows))
 
 
+def proxies() -> str:
+    """Each proxy with its own methods; those that every proxy has stand in the text."""
+    rows = []
+    for proxy in PROXIES:
+        names = [name for kind in reversed(proxy.__mro__) if kind not in Proxy.__mro__ for name in vars(kind) if not name.startswith("_")]
+        methods = [name for name in dict.fromkeys(names) if inspect.isfunction(getattr(proxy, name))]
+        told = [f"`{name}({', '.join(list(inspect.signature(getattr(proxy, name)).parameters)[1:])})`" for name in methods]
+        rows.append((f"`{proxy.__name__}`", f"`{proxy.MODULE}`", " ".join(told), (proxy.__doc__ or "").strip().split("\n")[0]))
+    return table(("proxy", "module", "methods", "what it is"), rows)
+
+
 def modules() -> str:
     """THE table of modules."""
     rows = ((f"`{row.name}`", row.group, f"{row.period_s:g} s" if row.period_s else "–", ", ".join(row.wakes) or "–", ", ".join(row.needs) or "–",
@@ -278,6 +291,7 @@ TABLES: dict[str, Callable[[], str]] = {
     "requests": requests,
     "shell": shell,
     "subshells": subshells,
+    "proxies": proxies,
     "modules": modules,
     "tutorials": tutorials,
 }

@@ -20,6 +20,7 @@ STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is ho
 TURNING_M = 0.06
 GRAZING = 8.0  # a wall that a cone's edge grazes comes nearer by so much more than the end of the cone sweeps: at seven degrees
 FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
+MOST_LOST = 4  # one echo in a hundred gets lost: three in a row do so within some minutes, and who stands must not come out of nothing then
 LONGEST_S = 0.7  # older rounds do not belong to the same approach
 
 
@@ -31,12 +32,14 @@ class Approach:
         self._ring = ring
         self._is_alone = is_alone
         self._rounds: list[tuple[Array, Planar, float]] = []
+        self._lost = np.zeros(ring.count, dtype=np.intp)  # rounds in a row without an echo
 
     def look(self, ranges_m: Array, robot: Planar, stamp_s: float, came: Mask) -> Array:
         """Take a round, heard from `robot`; `came`: (k,) whose echo comes from where a moment ago all was free.
 
         Returns: (n, 3) x m, y m and how far beside that, for each transducer that hears somebody come or go.
         """
+        ranges_m = self._without_losses(ranges_m)
         self._rounds = [*self._rounds[1 - ROUNDS :], (ranges_m, robot, stamp_s)]
         first_m, _, first_s = self._rounds[0]
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
@@ -45,12 +48,20 @@ class Approach:
         near = (ranges_m < HEAR_M) & (nearer_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
         return self._those_who_walk(near, came) if near.any() or came.any() else NOTHING
 
+    def _without_losses(self, ranges_m: Array) -> Array:
+        """The echoes, the last ones where they have only just stopped coming."""
+        is_silent = ranges_m >= self._ring.max_range_m
+        self._lost = np.where(is_silent, self._lost + 1, 0)
+        return np.where(is_silent & (self._lost <= MOST_LOST), self._rounds[-1][0], ranges_m) if self._rounds else ranges_m
+
     def _those_who_walk(self, near: Mask, came: Mask) -> Array:
         """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came."""
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
-        moved = walked(heard_m, places, axes, near, half_rad) | came
+        swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
+        stays = heard_m[-1] * swept_rad < TURNING_M  # where a cone ends while the robot turns is not known well enough to say what was free
+        moved = walked(heard_m, places, axes, near, half_rad) | (came & stays)
         if not moved.any():
             return NOTHING
         x, y, theta = places[-1].tolist()

@@ -13,7 +13,7 @@ from pluto_bt.skills.approach import Approach
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.scan_watch import ScanWatch
-from pluto_bt.skills.seen_kernels import CAME, SUDDEN
+from pluto_bt.skills.seen_kernels import CAME
 from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
@@ -136,5 +136,5 @@ class _Ear:
         news = space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
         found = self._approach.look(ranges_m, at, sonar.stamp_s, news == CAME)
         walkers.take_echoes(found, sonar.stamp_s)
-        if self._is_alone and (len(found) or (news == SUDDEN).any()):
+        if self._is_alone and (len(found) or news.any()):
             walkers.doubt(sonar.stamp_s)

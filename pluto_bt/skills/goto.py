@@ -162,7 +162,8 @@ class Goto:
     def _is_wedged(self, steering: Steering, now_s: float, odometry: Planar) -> bool:
         """Begin to back where neither driving nor turning helps, if the ground behind has just been driven over. With A = 0 it goes straight or not
         at all."""
-        self._driven = [*self._driven[-80:], odometry]
+        if not self._driven or math.dist(self._driven[-1][:2], odometry[:2]) > MOVED_M:  # who creeps or waits also knows how he came
+            self._driven = [*self._driven[-80:], odometry]
         sees_why = steering.free_m <= WEDGED_M and abs(steering.heading_rad) <= math.radians(10.0)
         is_held = now_s - max(self._came_s, self._braked_s) > HELD_S
         if not is_held and (not sees_why or now_s - self._moved_s < 1.0):

@@ -122,10 +122,10 @@ def ring_of(name: str) -> SonarRing:
 NOT_NEW = {name: np.zeros(ring_of(name).count, dtype=np.bool_) for name in ("atrv2", "pioneer")}
 
 
-def heard(name: str, way: list[Planar], shapes_at: list[tuple[Shape, ...]]) -> list[np.ndarray]:
-    """What `Approach` says in each round."""
+def heard(name: str, way: list[Planar], shapes_at: list[tuple[Shape, ...]], is_alone: bool = True) -> list[np.ndarray]:
+    """What `Approach` says in each round, by default that of a robot without a laser, which takes more for people."""
     ring, noise = ring_of(name), np.random.default_rng(2)
-    approach, said = Approach(ring), []
+    approach, said = Approach(ring, is_alone), []
     for k, (robot, shapes) in enumerate(zip(way, shapes_at, strict=True)):
         c, s = math.cos(robot[2]), math.sin(robot[2])
         x, y, theta = ring.axes.T
@@ -181,6 +181,12 @@ def test_a_ring_that_stands_hears_everything_that_moves(walk: list[float]) -> No
     assert watch.is_anybody_about(5.0)
 
 
+@pytest.mark.parametrize(("walk", "is_told"), [([2.5 - 0.1 * k for k in range(10)], True), (WALKS["goes"], False)], ids=["comes", "goes"])
+def test_beside_a_laser_the_ring_tells_only_of_who_comes(walk: list[float], is_told: bool) -> None:
+    said = heard("pioneer", [(0.0, 0.0, 0.0)] * 10, [(HALL, post(r, 0.0)) for r in walk], is_alone=False)
+    assert any(len(found) for found in said) == is_told
+
+
 def test_a_wall_that_the_robot_drives_at_is_not_somebody() -> None:
     said = heard("atrv2", [(3.0 + 0.05 * k, 0.0, 0.0) for k in range(20)], [(HALL,)] * 20)
     assert not any(len(found) for found in said)
@@ -196,3 +202,12 @@ def test_a_wall_along_the_edge_of_a_cone_is_not_somebody(turn_dps: float, leans_
     for k, found in enumerate(said):
         watch.take_echoes(found, k * ROUND_S)
     assert not watch.is_anybody_about(7.0)
+
+
+def test_a_post_whose_echo_gets_lost_for_some_rounds_does_not_come() -> None:
+    ring = ring_of("pioneer")
+    approach, watch = Approach(ring, True), WalkerWatch(30.0)
+    for k in range(40):
+        echo_m = ring.max_range_m if k % 10 in (3, 4, 5, 6) else 1.0
+        watch.take_echoes(approach.look(np.full(ring.count, echo_m), (0.0, 0.0, 0.0), k * ROUND_S, NOT_NEW["pioneer"]), k * ROUND_S)
+    assert not watch.is_anybody_about(4.0)

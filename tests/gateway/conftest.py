@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import pytest
 
 from pluto_bt.gateway.access import Access
-from pluto_bt.gateway.client import Client
+from pluto_bt.gateway.client import Backoff, Client
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
@@ -51,8 +51,9 @@ class Running:
         """Begin to step."""
         self._thread.start()
 
-    def client(self, **given: str) -> Client:
-        return Client(*self.address, timeout_s=20.0, **given)
+    def client(self, backoff: Backoff | None = None, **given: str) -> Client:
+        """A client who takes a lost line for the end, unless told when to try again."""
+        return Client(*self.address, timeout_s=20.0, backoff=backoff, **given)
 
     def renew(self) -> FakeRobot:
         """The robot as new, for the next test of a file that shares this gateway; its runs stay known, for one may still be watched, and its

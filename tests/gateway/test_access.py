@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import shutil
 import socket
@@ -13,6 +14,8 @@ import pytest
 
 from pluto_bt.gateway.access import Access, read_access
 from pluto_bt.gateway.audit import Audit
+from pluto_bt.gateway.client import AsyncClient, Client
+from pluto_bt.gateway.errors import TurnedAwayError
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address
@@ -135,6 +138,11 @@ def make_certificates(folder: Path) -> None:
     openssl("x509", "-req", "-in", "panel.csr", "-CA", "ca.pem", "-CAkey", "ca.key", "-CAcreateserial", "-out", "panel.pem", "-days", "2")
 
 
+async def greet_over_tls(address: tuple[str, int], authority: ssl.SSLContext) -> None:
+    async with AsyncClient(*address, token="0123456789abcdef-anna", tls=authority) as client:
+        assert (await client.request("ping", t="1")).get("t") == "1"
+
+
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl is not installed")
 def test_over_tls_people_come_by_token_or_certificate(tmp_path: Path, unpumped: Running) -> None:
     make_certificates(tmp_path)
@@ -164,6 +172,12 @@ def test_over_tls_people_come_by_token_or_certificate(tmp_path: Path, unpumped: 
     assert 'code="timeout" fatal="true"' in talk(""), "hello within hello_s"
     assert "<pong" in talk("<ping/><bye/>", "panel"), "the certificate says who it is"
     assert 'code="read-only"' in talk("<lease op='acquire'/>" + "x", "panel")
+    authority = ssl.create_default_context(cafile=str(tmp_path / "cert.pem"))
+    with Client(*address, token="0123456789abcdef-anna", tls=authority) as client:
+        assert client.lease("query").get("mine") == "false"
+    with pytest.raises(TurnedAwayError, match="none of those"):
+        Client(*address, token="0123456789abcdef-nobody", tls=authority)
+    asyncio.run(greet_over_tls(address, authority))
     talk("<stop/>x")
     assert unpumped.robot.did[-1][0] == "stop", "anyone may stop"
     with socket.create_connection(address, timeout=WAIT_S) as plain:
