@@ -194,7 +194,7 @@ class Scene:
         return self._answers(self._touching, outline_m)
 
     def hole(self, outline_m: ArrayLike) -> Nearest:
-        """The nearest hole, and the point of its edge: at distance 0 if the outline reaches over it. It is nothing solid: `clearance` does not see it.
+        """The nearest hole, and the point of its edge: distance 0 if the outline reaches over it. It is nothing solid: `clearance` does not see it.
 
         Raises: ValueError as `clearance`.
         """
