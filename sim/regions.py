@@ -32,16 +32,6 @@ class Regions:
             self._look(x_m, y_m)
         return self._inside
 
-    def edge_distance_m(self, x_m: float, y_m: float) -> float:
-        """A lower bound of the distance from the point to the nearest edge of any polygon; not less than a third of it."""
-        if not self._n:
-            return math.inf
-        moved_m = math.hypot(x_m - self._x, y_m - self._y)
-        if moved_m >= 0.5 * self._margin_m:
-            self._look(x_m, y_m)
-            return self._margin_m
-        return self._margin_m - moved_m
-
     def _look(self, x_m: float, y_m: float) -> None:
         """Even-odd rule and distances to all edges."""
         to_point = np.array([x_m, y_m]) - self._start

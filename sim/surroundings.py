@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -11,7 +9,6 @@ from pluto_bt.maps.geometry import Pose
 from pluto_bt.maps.scene import Nearest, Scene
 from pluto_bt.maps.world import World
 from sim.actors import Walker, fastest_mps
-from sim.regions import Regions
 from sim.simtime import SimTime
 
 Array = NDArray[np.float64]
@@ -24,10 +21,7 @@ class Surroundings:
         self._scene = Scene(world)
         self._time = time
         self._walkers = {actor.id: Walker(actor) for actor in world.actors}
-        holes = [shape for shape in world.shapes if shape.kind == "hole"]
-        self._hole_ids = frozenset(hole.id for hole in holes)
-        self._hole_edges = Regions([hole.points for hole in holes])
-        self._holes_moved = False
+        self._has_holes = any(shape.kind == "hole" for shape in world.shapes)
         self._actors_at_ns = -1
         self.fastest_mps = fastest_mps(self._walkers.values())
 
@@ -47,19 +41,16 @@ class Surroundings:
         return self._scene.clearance(outline_m).distance_m
 
     def gap_m(self, outline_m: Array) -> float:
-        """Distance from the outline to everything solid; 0 in contact, or with a corner over a hole: that counts as contact too."""
-        if self._hole_ids and self._scene.over_hole(outline_m):
-            return 0.0
-        return self.solid_gap_m(outline_m)
+        """Distance from the outline to everything solid, and to the edge of a hole; 0 in contact, or reaching over a hole: that is contact too."""
+        solid_m = self.solid_gap_m(outline_m)
+        return min(solid_m, self._scene.hole(outline_m).distance_m) if self._has_holes else solid_m
 
     def contacts(self, outline_m: Array) -> list[Nearest]:
         """Everything solid that the outline overlaps, and a hole that it reaches over."""
         self._bring_actors()
         found = self._scene.contacts(outline_m)
-        if self._hole_ids and (hole := self._scene.over_hole(outline_m)):
-            middle = self._scene.outline_of(hole).mean(axis=0)
-            x, y = outline_m[np.argmin(((outline_m - middle) ** 2).sum(axis=1))].tolist()
-            found.append(Nearest(0.0, x, y, hole))
+        if self._has_holes and (hole := self._scene.hole(outline_m)).distance_m <= 0.0:
+            found.append(hole)
         return found
 
     def actors(self) -> dict[str, tuple[float, float, float]]:
@@ -85,13 +76,6 @@ class Surroundings:
             self._actors_at_ns = -1
             return
         self._scene.place(id, x_m, y_m)
-        self._holes_moved |= id in self._hole_ids
-
-    def hole_gap_m(self, x_m: float, y_m: float, radius_m: float) -> float:
-        """A lower bound of the distance between any hole and a robot within `radius_m` of the point; 0 or less = look closely."""
-        if not self._hole_ids:
-            return math.inf
-        return 0.0 if self._holes_moved else self._hole_edges.edge_distance_m(x_m, y_m) - radius_m
 
     def _bring_actors(self) -> None:
         """Move the discs of the scene to where the actors are now."""

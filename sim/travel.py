@@ -62,7 +62,7 @@ class Travel:
             self._seen = seen
             self._gap_here_m = self._gap_m(body.pose)
             self.min_clearance_m = min(self.min_clearance_m, self._gap_here_m)
-        self._free_m = min(self._gap_here_m, self._around.hole_gap_m(body.x_m, body.y_m, self._outline.radius_m))
+        self._free_m = self._gap_here_m
         if self._free_m > RELEASE_M:
             self._touching.clear()
         return self._gap_here_m
@@ -123,10 +123,10 @@ class Travel:
                 self._note(contact, closing_mps)
 
     def _closing_mps(self, twist: tuple[float, float]) -> float:
-        """Own speed towards what stands in contact: how fast the gap opens when the arc is run backwards."""
+        """Own speed towards what is in contact: how fast the gap opens when the arc is run backwards."""
         backed_off = motion.along_arc(self._body.pose, *twist, -TICK_S)
         fastest_mps = abs(twist[0]) + abs(twist[1]) * self._outline.radius_m
-        return min((self._gap_m(backed_off) - self._gap_m(self._body.pose)) / TICK_S, fastest_mps)  # at a hole the gap jumps
+        return min((self._gap_m(backed_off) - self._gap_m(self._body.pose)) / TICK_S, fastest_mps)
 
     def _stop_if_deeper(self, before: Pose, twist: tuple[float, float]) -> None:
         """Something lies over the robot already: it may move away from that, but neither further into it nor into anything else."""

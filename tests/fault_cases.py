@@ -73,6 +73,8 @@ CASES: tuple[FaultCase, ...] = (
               "stop filter and drive, by its age", first="odometry-stale"),
     FaultCase("odometry stuck: new stamps, old counts", fault("odometry", "stuck"), "FAILURE odometry-frozen", 0.5, "odometry-frozen",
               "stop filter: commanded wheels that count nothing; tries again every second"),
+    FaultCase("base 300 ms late", fault("base", "late", 'delay="0.3"'), "FAILURE odometry-stale", 0.5, "odometry-stale",
+              "stop filter and avoidance: the odometry does not reach to where the scans were taken"),
     FaultCase("base blocked", fault("base", "blocked"), "FAILURE stuck", 0.5, "odometry-frozen", "as above; goto gives up"),
     FaultCase("full wheel slip", fault("base", "slip"), "FAILURE stuck", GOES_ON, "wheel-slip",
               "cross-check: the laser sees no way; it is believed, so goto sees that it comes no nearer"),
@@ -94,6 +96,8 @@ CASES: tuple[FaultCase, ...] = (
               "cross-check: what the laser sees does not move as the robot does"),
     FaultCase("fatal laser while the gyro drifts", fault("laser", "fatal") + fault("imu", "jump", 'value="0.2"'), "SUCCESS", 0.5, "gyro-bias-changed",
               "while the robot waits it stands, and so finds the gyro's new bias", first="laser-fatal"),
+    FaultCase("stop filter switched off", fault("module:filter", "off"), "FAILURE chain-stopped", 0.5, "chain-stopped",
+              "the base, by its dead-man; drive, by the filter's silence", first="module-stopped"),
     FaultCase("the leaf raises", fault("leaf:go", "raise"), "STOPPED leaf-error", 0.2, "leaf-error", "the executive, in the same tick"),
 )
 # fmt: on

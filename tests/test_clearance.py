@@ -96,12 +96,14 @@ def test_a_wall_wholly_under_the_robot_is_a_contact():
 def test_a_hole_is_not_solid_but_told():
     scene = Scene(World("w", shapes=(polygon("pit", at(SQUARE, 1.5, 0), "hole"), polygon("far", at(SQUARE, 50, 0), "hole"))))
     assert scene.clearance(ROBOT).distance_m == math.inf
-    assert scene.over_hole(ROBOT) == "pit"
-    assert scene.over_hole(at(ROBOT, -1.0, 0)) == ""
-    assert scene.over_hole(at(ROBOT * 0.1, 50, 0)) == "far"
-    assert scene.over_hole(ROBOT * 100) == "pit"
+    assert scene.hole(ROBOT)[::3] == (0.0, "pit")
+    assert scene.hole(at(ROBOT * 0.1, 50, 0))[::3] == (0.0, "far"), "wholly over it"
+    assert scene.hole(ROBOT * 100)[::3] == (0.0, "pit"), "all around it"
+    assert scene.hole(at(ROBOT, -1.0, 0)).distance_m == pytest.approx(0.9, abs=1e-12)
+    assert scene.hole(at(ROBOT, 47.0, 0))[::3] == (pytest.approx(1.4, abs=1e-12), "far"), "the nearest of both"
     scene.remove("pit")
-    assert scene.over_hole(ROBOT) == ""
+    scene.remove("far")
+    assert scene.hole(ROBOT).owner == ""
 
 
 def test_deep_inside_the_solid_part_of_a_map_is_contact():

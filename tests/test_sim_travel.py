@@ -113,9 +113,27 @@ def test_something_placed_on_the_robot_has_hit_it_and_something_removed_lets_it_
     assert [contact.with_id for contact in sim.collisions] == ["door"]
 
 
+PIT = Shape("pit", "hole", points((2.0, -1.0), (3.0, -1.0), (3.0, 1.0), (2.0, 1.0)))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-2.0, 1.0), st.floats(-0.9, 0.9), st.floats(-0.6, 0.6), st.floats(0.1, 1.0))
+def test_own_speed_towards_a_hole_is_that_towards_a_wall_in_its_place(x_m: float, y_m: float, theta_rad: float, speed_mps: float) -> None:
+    wall = Shape("pit", "polygon", PIT.points)
+    falls, hits = (run(Simulator(room(shape), cart(), 0, start=(x_m, y_m, theta_rad)), 8.0, speed_mps) for shape in (PIT, wall))
+    told = [[(c.t_s, c.with_id, pytest.approx(c.speed_mps, abs=1e-6)) for c in sim.collisions] for sim in (falls, hits)]
+    assert told[0] == told[1] and falls.hit_by == hits.hit_by
+    assert falls.min_clearance_m == pytest.approx(hits.min_clearance_m, abs=1e-9) and falls.pose == pytest.approx(hits.pose, abs=1e-9)
+
+
+def test_how_near_the_robot_passed_a_hole_is_told() -> None:
+    pit = Shape("pit", "hole", points((0.0, 0.7), (1.0, 0.7), (1.0, 1.5), (0.0, 1.5)))
+    sim = run(Simulator(room(pit), cart(), 0), 6.0, 0.5)
+    assert sim.min_clearance_m == pytest.approx(0.3, abs=1e-6) and not sim.collisions
+
+
 def test_driving_over_the_edge_of_a_hole_is_a_collision() -> None:
-    hole = Shape("pit", "hole", points((2.0, -1.0), (3.0, -1.0), (3.0, 1.0), (2.0, 1.0)))
-    sim = run(Simulator(room(hole), cart(), 0), 6.0, 0.5)
+    sim = run(Simulator(room(PIT), cart(), 0), 6.0, 0.5)
     (contact,) = sim.collisions
     assert contact.with_id == "pit"
     assert sim.pose[0] == pytest.approx(1.5, abs=1e-5)

@@ -22,7 +22,8 @@ PATIENCE_S: Final = 4.0  # a wrist that does not get there keeps nobody waiting 
 STILL_MPS, STILL_RADPS = 0.02, 0.03
 HOLD_S: Final = 1.0
 AMONG_PEOPLE_S: Final = 10.0  # so long after the stop filter held for a walker, a sweep leaves the sides alone …
-AHEAD: Final = 5  # … and looks ahead so many times for each look down
+LOOKS_AHEAD: Final = 5  # … and looks ahead so many times for each look down
+AHEAD: Final = (0.0, 0.0)
 
 
 class WristTour(Leaf):
@@ -32,6 +33,7 @@ class WristTour(Leaf):
         """From the beginning."""
         self._targets = self.targets()
         self._next, self._since_s, self._there_s = -1, self.now_s(), math.inf
+        self._has_pointed = False
 
     def targets(self) -> list[Pair]:
         """(pan, tilt) in radians, one after the other."""
@@ -50,10 +52,10 @@ class WristTour(Leaf):
         return False
 
     def terminate(self, new_status: Status) -> None:
-        """The laser looks ahead again."""
+        """The laser looks ahead again: also between two rounds, and after the last, when there is no next target."""
         robot = self.robot
-        if robot is not None and robot.platform.devices.wrist is not None and self._next >= 0:
-            self._point(robot, (0.0, 0.0))
+        if robot is not None and self._has_pointed:
+            self._point(robot, AHEAD)
 
     def _is_seen(self, robot: Robot, now_s: float) -> bool:
         state, scan = robot.newest("wrist/state"), robot.newest("sick/scan")
@@ -67,6 +69,7 @@ class WristTour(Leaf):
     def _point(self, robot: Robot, target: Pair) -> None:
         wrist = robot.platform.devices.wrist
         if wrist is not None:
+            self._has_pointed = True
             rate_dps, acceleration_dps2 = min(RATE_DPS, wrist.max_rate_dps), min(ACCELERATION_DPS2, wrist.max_acceleration_dps2)
             robot.point_wrist(*target, math.radians(rate_dps), math.radians(acceleration_dps2))
 
@@ -147,7 +150,7 @@ class SweepWrist(WristTour):
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
         down = [(0.0, tilt)] if tilt > 0.0 else []
         if self.now_s() - self._walker_s < AMONG_PEOPLE_S:
-            return [*down, *[(0.0, 0.0)] * AHEAD]
+            return [*down, *[AHEAD] * LOOKS_AHEAD]
         return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, (0.0, 0.0)]
 
     def update(self) -> Status:

@@ -92,7 +92,7 @@ class NavigateTo(PathDriver):
 
     def _no_way(self, robot: Robot, reason: str, text: str) -> Status:
         """Stand and wait: what blocks the way may be somebody who walks on. Nothing was seen in the way: then waiting does not help."""
-        if self._blocked_since_s is None:
+        if self._blocked_since_s is None or robot.surroundings.await_passers_by(self._last_s):
             self._blocked_since_s = self._last_s
         is_for_ever = not len(robot.navigation.blocking())
         if is_for_ever or self._last_s - self._blocked_since_s >= PATIENCE_S:

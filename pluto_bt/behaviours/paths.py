@@ -27,6 +27,8 @@ NEW_POINT_M: Final = 0.6  # a goto point that moves less is not worth a new comm
 POINT_TOLERANCE_M: Final = 0.4
 NEW_HEADING_RAD: Final = math.radians(8.0)
 REFRESH_S: Final = 2.0
+AGAIN_S: Final = 1.0  # while somebody is in the way, a path is looked for so often
+PEOPLE: Final = "every way is blocked, and somebody is about who will walk on: waiting"
 SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on
 GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
 
@@ -62,7 +64,7 @@ class FindPath(Leaf):
 
     def initialise(self) -> None:
         """Time counts from the first tick."""
-        self._start_s = self.now_s()
+        self._start_s, self._next_s = self.now_s(), -math.inf
 
     def update(self) -> Status:
         """Answers at once, unless it has to wait for a pose."""
@@ -74,13 +76,19 @@ class FindPath(Leaf):
             doubt = pose_doubt(robot)
             text, is_over = doubt.text or "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
             return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
+        if self.now_s() < self._next_s:
+            return self.wait(PEOPLE)
         goal = goal_of(self)
-        around.openings.turn()
+        if self._next_s == -math.inf:
+            around.openings.turn()
         if goal is not None and is_near(around, goal):
             self._set_output("near", True)
             return self.succeed("the goal is near")
         self._set_output("near", False)
         around.way = around.find(goal)
+        if around.way is None and goal is not None and around.await_passers_by(self.now_s()):
+            self._next_s = self.now_s() + AGAIN_S
+            return self.wait(PEOPLE)
         if around.way is not None and not around.headway.decide(around.robot[:2]):
             if goal is not None:
                 return self.fail("stuck", "one path after the other ends here")
@@ -140,7 +148,7 @@ class FollowRay(MotionLeaf):
         if self._goal is not None and is_near(around, self._goal):
             around.blocked = 0
             return self._decide("none", "the goal is near", near=True)
-        if status is not None and (self._word or status.reason == "walker"):  # he goes on: the place is not blocked
+        if status is not None and (self._word or around.await_passers_by(now_s)):  # he goes on: the place is not blocked
             self._following.pause(now_s)
         speed_mps = status.data[0] if status is not None else 0.0
         advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)

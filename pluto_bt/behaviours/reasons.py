@@ -31,7 +31,7 @@ REASONS: Final[dict[str, Reason]] = {
     "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),
     "bumper-stale": Reason("the bumpers deliver nothing any more", "check the bumpers and their cable"),
     "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
-    "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid and drive"),
+    "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid, drive and filter"),
     "command-timeout": Reason("drive had no new command for 4 s and stopped", "send commands more often, or use a leaf that refreshes its command"),
     "estop": Reason("the emergency stop is latched", "see to the cause, release the stop, then resume the mission or command anew"),
     "executive-silent": Reason("the executive has stopped working, so nothing may move", "look at the leaf or module named in the events"),

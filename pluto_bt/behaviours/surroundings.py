@@ -11,13 +11,14 @@ import math
 import msgspec
 
 from pluto_bt.behaviours.robot import Robot, pose_of
-from pluto_bt.blackboard.messages import Pair, Pose
+from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
 from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
+from pluto_bt.skills.passers_by import PassersBy
 from pluto_bt.skills.rays import Openings
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.sight import ScanView
@@ -44,6 +45,7 @@ class Surroundings:
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
         self._refreshed_s = -math.inf
+        self._passers_by = PassersBy()
         self._first_variance_m2 = math.inf  # of the believed position when the rectangle was set
         self._doubt_m = 0.0
         self.begin(None)
@@ -101,6 +103,7 @@ class Surroundings:
 
     def look(self, robot: Robot, now_s: float) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is."""
+        self.watch_passers_by(robot, now_s)
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
         if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
             return False
@@ -124,6 +127,18 @@ class Surroundings:
             for grid in self._grids():
                 grid.refresh(now_s)
         return True
+
+    def watch_passers_by(self, robot: Robot, now_s: float) -> None:
+        """Take the signs of somebody; `look` does so too."""
+        held, raw, bumper = robot.newest("filter/status"), robot.newest("ATRV2/Drive/Raw"), robot.newest("ATRV2/Bumper")
+        self._passers_by.note(
+            now_s, held if isinstance(held, FVectorState) else None, raw if isinstance(raw, ActuatorState) else None,
+            bumper if isinstance(bumper, BumperState) else None,
+        )  # fmt: skip
+
+    def await_passers_by(self, now_s: float) -> bool:
+        """True while somebody is about who will walk on: what is blocked is blocked for a while."""
+        return self._passers_by.are_awaited(now_s)
 
     @property
     def rectangle_here(self) -> Rectangle | None:

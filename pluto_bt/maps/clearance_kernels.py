@@ -109,17 +109,22 @@ def touching_solids(
 
 
 @kernel
-def hole_under(outline: Table, segments: Table, rings: Table) -> int:
-    """Owner of the first hole that shares a point with the outline; -1 = none."""
+def nearest_hole(outline: Table, segments: Table, rings: Table, found: Table) -> int:
+    """The nearest hole into `found[0]`, at distance 0 if the outline reaches over it; returns how many there are, 0 or 1, or -1 as above."""
+    found[0, GAP] = math.inf
+    cx, cy, radius = outline_circle(outline)
+    if not math.isfinite(cx + cy + radius):
+        return -1
     for k in range(rings.shape[0]):
         if rings[k, RING_HEIGHT] >= 0.0:
             continue
-        if ring_holds(segments, rings, k, outline[0, 0], outline[0, 1]):
-            return int(rings[k, RING_OWNER])
+        if found[0, GAP] > 0.0 and ring_holds(segments, rings, k, outline[0, 0], outline[0, 1]):
+            keep_nearest(found, 0.0, outline[0, 0], outline[0, 1], rings[k, RING_OWNER])
         for s in range(int(rings[k, FIRST]), int(rings[k, END])):
-            if segment_gap(outline, segments[s, X1], segments[s, Y1], segments[s, X2], segments[s, Y2])[0] <= 0.0:
-                return int(rings[k, RING_OWNER])
-    return -1
+            if segment_within(segments, s, cx, cy, found[0, GAP] + radius):
+                gap, x, y = segment_gap(outline, segments[s, X1], segments[s, Y1], segments[s, X2], segments[s, Y2])
+                keep_nearest(found, gap, x, y, rings[k, RING_OWNER])
+    return 1 if math.isfinite(found[0, GAP]) else 0
 
 
 @kernel

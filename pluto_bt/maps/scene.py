@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pluto_bt.maps.clearance_kernels import hole_under, nearest_solid, touching_solids
+from pluto_bt.maps.clearance_kernels import nearest_hole, nearest_solid, touching_solids
 from pluto_bt.maps.cones import APEX_X, APEX_Y, AXIS_RAD, NEAREST, cones_nearest
 from pluto_bt.maps.fan import fan_of
 from pluto_bt.maps.geometry import Pose
@@ -61,7 +61,7 @@ class Scene:
         self._found = np.zeros((len(self.owners), 4))
         self._arrange()
         self._scan, self._cones = scan_solids.compiled(), cones_nearest.compiled()
-        self._nearest, self._touching, self._hole_under = nearest_solid.compiled(), touching_solids.compiled(), hole_under.compiled()
+        self._nearest, self._touching, self._nearest_hole = nearest_solid.compiled(), touching_solids.compiled(), nearest_hole.compiled()
 
     # what changes it
 
@@ -193,10 +193,13 @@ class Scene:
         """
         return self._answers(self._touching, outline_m)
 
-    def over_hole(self, outline_m: ArrayLike) -> str:
-        """The id of a hole that the outline reaches over; "" if none. A hole is nothing solid: `clearance` does not see it."""
-        owner = self._hole_under(self._take_outline(outline_m), self._segments, self._rings)
-        return self.owners[owner] if owner >= 0 else ""
+    def hole(self, outline_m: ArrayLike) -> Nearest:
+        """The nearest hole, and the point of its edge: distance 0 if the outline reaches over it. It is nothing solid: `clearance` does not see it.
+
+        Raises: ValueError as `clearance`.
+        """
+        outline = self._take_outline(outline_m)
+        return (self._told(outline, self._nearest_hole(outline, self._segments, self._rings, self._found)) or [NOTHING])[0]
 
     # tables
 
@@ -220,6 +223,10 @@ class Scene:
         """What a kernel finds around an outline."""
         outline = self._take_outline(outline_m)
         count = question(outline, self._segments, self._blocks, self._rings, self._discs, self._free, self._frame, self._cells, self._found)
+        return self._told(outline, count)
+
+    def _told(self, outline: Array, count: int) -> list[Nearest]:
+        """The first rows of what was found."""
         if count < 0:
             raise ValueError(f"the corners of an outline are finite, not {outline.tolist()}")
         return [Nearest(distance_m, x_m, y_m, self.owners[int(owner)]) for distance_m, x_m, y_m, owner in self._found[:count].tolist()]

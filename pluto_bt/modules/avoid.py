@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -19,6 +18,7 @@ from pluto_bt.skills.avoid import AvoidParameters, AvoidSenses
 from pluto_bt.skills.drive import DriveParameters
 from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.passers_by import PassersBy
 from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.verdict import Verdict
 from pluto_bt.skills.wall_parameters import WallParameters
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from pluto_bt.modules.robot_file import RobotFile
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
-AWAITS_S = 10.0  # so long after the stop filter held for a walker his fellows, and the echoes that he left behind (8 s), are still awaited
 BUMPERS = (LinkStatus.FRONT_BUMPER, LinkStatus.BACK_BUMPER)
 
 
@@ -48,7 +47,7 @@ class Avoid:
         self._scan, self._check = newest(context, "sick/scan"), newest(context, "Localization/Check")
         self._view: ScanView | None = None
         self._sent: ActuatorState | None = None
-        self._walker_s = -math.inf
+        self._passers_by, self._bumper = PassersBy(), newest(context, "ATRV2/Bumper")
 
     def start(self, now_s: float) -> None:
         """Begin without a command."""
@@ -107,13 +106,13 @@ class Avoid:
 
     def _senses(self, now_s: float, drive: FVectorState | None) -> AvoidSenses:
         data = STILL if drive is None else drive.data
-        self._walker_s = now_s if drive is not None and drive.reason == reasons.WALKER else self._walker_s
         oldest_s = now_s - self._parameters.pose_stale_s
         raw = self._raw()
+        self._passers_by.note(now_s, drive, raw, self._bumper())
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
         check: FVectorState | None = self._check()
-        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), now_s - self._walker_s < AWAITS_S)
+        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), self._passers_by.are_awaited(now_s))
         if check is None or check.reason not in (reasons.LOST, reasons.NO_POSE):
             return senses
         return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))

@@ -21,6 +21,8 @@ from pluto_bt.source import InputError
 if TYPE_CHECKING:
     from pluto_bt.modules.robot_file import RobotFile
 
+FILTER_SILENT_S = 0.5  # the filter answers each step of the drive; silent for so long it does not run, and nothing reaches the base
+FILTER_SILENT = "the stop filter does not answer: start the module filter"
 AMENDER = "avoid"  # only the upper link amends an order: the same stamp as before
 
 
@@ -38,12 +40,14 @@ class Drive:
         self._filter_status = newest(context, "filter/status")
         self._devices = context.devices
         self._say = context.say
+        self._started_s = 0.0
 
     def start(self, now_s: float) -> None:
         """Calibrate the base; begin at rest, without a command."""
         if not self._link.is_running:
             self._calibrate()
             self._skill.reset()
+            self._started_s = now_s
             self._link.start()
 
     def tune(self, robot: RobotFile) -> None:
@@ -80,6 +84,9 @@ class Drive:
     def _status(self, now_s: float) -> FVectorState:
         """The drive's own status; where the stop filter lets less through than the drive gives, its verdict and the velocities it lets through."""
         own, verdict = self._skill.status(now_s), self._filter_status()
+        heard_s = self._started_s if verdict is None else max(verdict.stamp_s, self._started_s)
+        if not own.reason and now_s - heard_s > FILTER_SILENT_S:
+            return msgspec.structs.replace(own, data=STILL, reason=reasons.CHAIN_STOPPED, text=FILTER_SILENT)
         if own.reason or verdict is None or not verdict.reason or verdict.reason == reasons.STOPPED:
             return own
         code = (own.element[0] or verdict.element[0],)

@@ -5,6 +5,7 @@ from __future__ import annotations
 BAD_COMMAND = "bad-command"
 BUMPER = "bumper"
 BUMPER_STALE = "bumper-stale"
+CHAIN_STOPPED = "chain-stopped"
 COMMAND_TIMEOUT = "command-timeout"
 ESTOP = "estop"
 EXECUTIVE_SILENT = "executive-silent"
@@ -33,6 +34,7 @@ CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
     BUMPER: "a bumper is or was pressed; back off, release it, then send a new command",
     BUMPER_STALE: "the bumpers are missing or too old; nothing else feels what is lower than every sensor",
+    CHAIN_STOPPED: "a link farther down the chain does not run: nothing reaches the base",
     COMMAND_TIMEOUT: "no new command came in time; a controlled stop",
     ESTOP: "the emergency stop is latched; release it, then command anew",
     EXECUTIVE_SILENT: "the executive has stopped working; nothing moves without it",

@@ -15,6 +15,7 @@ from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
 GOOD_IN_A_ROW = 2  # after a fault so many good scans, each in time, make the laser trustworthy again
 MOVED_M, MOVED_RAD = 0.02, 0.02  # after so much motion two scans cannot be equal
+NO_PLACE = "the odometry comes too late: it is not known from where the newest scan was taken"  # a late scan is told by its age
 RETURNS = 20  # in half a scan: fewer may well stay the same, an empty field always looks the same
 
 
@@ -69,7 +70,7 @@ class ScanWatch:
             share = 1.0 - n_usable / max(1, len(ranges))
             return _bad(f"{share:.0%} of the beams give no usable number; {self._holes:.0%} are allowed")
         if laser is None:
-            return _bad("it is not known from where the newest scan was taken")
+            return Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
         half = len(ranges) // 2
         for which, part in enumerate((slice(None, half), slice(half, None))):
             if self._is_frozen(which, ranges, part, laser):

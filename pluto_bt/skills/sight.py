@@ -14,7 +14,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.obstacles import Obstacles
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.scan_watch import are_same
+from pluto_bt.skills.scan_watch import NO_PLACE, are_same
 from pluto_bt.skills.sonar import SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -119,7 +119,7 @@ class Sight:
             if holes > self.parameters.laser_holes:
                 return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER_STALE, f"{holes:.0%} of the beams give no number")
         if view.laser is None:
-            return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER_STALE, "it is not known from where the newest scan was taken")
+            return Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
         if self._is_frozen(ranges, robot):
             return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER_STALE, "the laser sees exactly the same although the robot moves")
         return ALL_WELL

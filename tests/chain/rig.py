@@ -75,7 +75,7 @@ class Rig:
         self._base_s = -1.0
         self._distance = 0.0
         self._gap = 0.0
-        names = ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose")
+        names = ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose", "filter/status")
         self._publish = {name: self.board.publisher(name, self.board.topic(name).writer) for name in names}
         self._scans: list[LaserScan] = []
         self._woken: set[str] = set()
@@ -136,6 +136,7 @@ class Rig:
         letter = self.inboxes["filter"].take()
         if letter is not None:
             self._base, self._base_s = letter.command.velocity, self.now
+            self._publish["filter/status"].put(FVectorState(self.now, self._base), self.now)  # a filter that lets everything through
 
     # ---------------------------------------------------------------- physics
 

@@ -1,0 +1,46 @@
+"""The wrist after a sweep: level and ahead, so that the laser goes on being the witness of the robot's motion."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pluto_bt.scenario import Play
+
+ROOM = '<wall id="room">-3,-5 12,-5 12,5 -3,5 -3,-5</wall>'
+MUD = f'<world name="mud">{ROOM}<terrain id="mud" slip="1.0">4,-2 6,-2 6,2 4,2</terrain><robot x="0" y="0"/></world>'
+SWEEPS = {
+    "once": '<Sequence><SweepWrist/>{go}</Sequence>',
+    "with a steep look down": '<Sequence><SweepWrist tilt_deg="25" pan_deg="30"/>{go}</Sequence>',
+    "cut off by its time": '<Sequence><ForceSuccess><Timeout msec="2500"><SweepWrist rounds="-1"/></Timeout></ForceSuccess>{go}</Sequence>',
+    "looking around": "<Sequence><LookAround/>{go}</Sequence>",
+    "the shipped tree": '<Sequence><SubTree ID="Visit" place="1;0" reason="{{first}}"/>{go}</Sequence>',
+}  # fmt: skip
+VISITS = Path(__file__).parents[2] / "missions" / "visits.xml"
+GO = '<GoTo goal="9;0" timeout_s="100" reason="{why}"/>'
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> Any:
+    """Writes a world and a mission, gives their paths."""
+
+    def write(world: str, tree: str) -> tuple[str, str]:
+        paths = tmp_path / "world.xml", tmp_path / "mission.xml"
+        include = f'<include path="{VISITS}"/>' if "Visit" in tree else ""
+        mission = f'<root BTCPP_format="4" main_tree_to_execute="M">{include}<BehaviorTree ID="M">{tree}</BehaviorTree></root>'
+        for path, text in zip(paths, (world, mission), strict=True):
+            path.write_text(text, encoding="utf-8")
+        return str(paths[0]), str(paths[1])
+
+    return write
+
+
+@pytest.mark.parametrize("sweep", SWEEPS.values(), ids=SWEEPS)
+def test_after_a_sweep_the_laser_notices_wheels_that_spin_and_goto_does_not_boast(scenario: Play, files: Any, sweep: str) -> None:
+    world, mission = files(MUD, sweep.format(go=GO))
+    run = scenario(world, mission=mission, max_time_s=200.0)
+    assert (run.result, run.reason) == ("FAILURE", "stuck"), run.text
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.5
