@@ -29,8 +29,7 @@ TEXTS: Final = {Search.NOBODY: "nothing moves here", Search.LOST: "the target is
 class Follow(MotionLeaf):
     """Follows the nearest moving thing that the laser sees, at `distance_m`; SUCCESS after `duration_s` of following.
 
-    Fails with `no-object` if nothing moves for 10 s, with `target-lost` if the target stays out of sight for 8 s,
-    not counting the time, 20 s at most, in which somebody else holds the robot up.
+    Fails with `no-object` if nothing moves for 10 s, with `target-lost` if the target stays out of sight for 8 s.
     The wrist keeps the laser on a target that walks off to the side.
     """
 
@@ -65,7 +64,7 @@ class Follow(MotionLeaf):
 
     def update(self) -> Status:
         """Note how long the mission was paused, for `resume`."""
-        self._gap_s = self.now_s() - self._last_s  # since the last tick
+        self._gap_s = self.now_s() - self._last_s
         return super().update()
 
     def follow(self, robot: Robot) -> Status:
@@ -79,9 +78,6 @@ class Follow(MotionLeaf):
         at: Planar = (dead.pose[0], dead.pose[1], dead.pose[3])
         self._look(robot, at)
         now_s = self.now_s()
-        robot.surroundings.watch_passers_by(robot, now_s)
-        if self._heard is not None and self._heard.reason and robot.surroundings.await_passers_by(now_s):
-            self._skill.hold(self._gap_s)
         state = self._skill.state(now_s)
         if state in TEXTS:
             return self.fail(state.value, TEXTS[state])

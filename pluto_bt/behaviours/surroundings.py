@@ -103,7 +103,7 @@ class Surroundings:
 
     def look(self, robot: Robot, now_s: float) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is."""
-        self.watch_passers_by(robot, now_s)
+        self._watch_passers_by(robot, now_s)
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
         if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
             return False
@@ -128,8 +128,7 @@ class Surroundings:
                 grid.refresh(now_s)
         return True
 
-    def watch_passers_by(self, robot: Robot, now_s: float) -> None:
-        """Take the signs of somebody; `look` does so too."""
+    def _watch_passers_by(self, robot: Robot, now_s: float) -> None:
         held, raw, bumper = robot.newest("filter/status"), robot.newest("ATRV2/Drive/Raw"), robot.newest("ATRV2/Bumper")
         self._passers_by.note(
             now_s, held if isinstance(held, FVectorState) else None, raw if isinstance(raw, ActuatorState) else None,

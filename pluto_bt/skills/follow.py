@@ -23,7 +23,6 @@ LIKE_M, THERE_M = 0.2, 2.0  # one who stands is the target only if he is as wide
 LOOK_S: Final = 1.6  # nobody is chosen before, so that a slow one who is near is not missed for a fast one who is far
 SEARCH_S: Final = 10.0
 LOST_S: Final = 8.0
-MOST_HELD_S: Final = 20.0  # longer he may have walked anywhere
 CLOSE_UP_PER_S: Final = 0.8  # speed for each metre that the distance is too long, on top of the target's own
 HYSTERESIS_M: Final = 0.15
 AROUND_S, AROUND_RAD = 3.5, math.radians(60.0)  # after so long out of sight it is looked for all around
@@ -58,14 +57,11 @@ class Follow:
         self._start_s = now_s
         self._drives = False
         self._turn_side = 1.0
-        self._held_s = 0.0  # of the time since the target was seen
         self.target: Track | None = None
 
     def see(self, pieces: list[Piece], robot: Planar, stamp_s: float) -> None:
         """Take a scan's pieces."""
         self._tracks.see(pieces, stamp_s, self.target)
-        if self.target is not None and self.target.seen_s == stamp_s:
-            self._held_s = 0.0
         if self.target is None:
             self._choose(robot, stamp_s)
         elif stamp_s - self.target.seen_s >= 0.5 * FORETELL_S:
@@ -76,12 +72,7 @@ class Follow:
         if self.target is None:
             return Search.LOOKING if now_s - self._start_s < SEARCH_S else Search.NOBODY
         hidden_s = now_s - self.target.seen_s
-        return Search.SEEN if hidden_s < FORETELL_S else Search.HIDDEN if hidden_s - self._held_s < LOST_S else Search.LOST
-
-    def hold(self, dt_s: float) -> None:
-        """Time in which somebody else stood in the robot's way does not make the target lost."""
-        if self.target is not None:
-            self._held_s = min(self._held_s + dt_s, MOST_HELD_S)
+        return Search.SEEN if hidden_s < FORETELL_S else Search.HIDDEN if hidden_s < LOST_S else Search.LOST
 
     def pause(self, gap_s: float) -> None:
         """Time in which nobody looked does not count."""
