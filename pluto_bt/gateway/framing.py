@@ -191,6 +191,8 @@ class Framer:
         limit = self._limits.mission_depth + 1 if self._in_mission else self._limits.depth
         if self._depth > limit:
             raise self._error("too-deep", f"expected at most {limit} elements inside each other", element.sourceline)
+        if any(":" in name and name[0] != "{" for name in (element.tag, *element.attrib)):  # libxml2 complains of these sooner or later
+            raise self._error("not-well-formed", f"expected names without a stray colon, found <{element.tag}>", element.sourceline)
         count = len(element.attrib) + (len(element.nsmap) if element.nsmap else 0)
         if count > self._limits.attributes:
             raise self._error("too-large", f"expected at most {self._limits.attributes} attributes, found {count}", element.sourceline)
