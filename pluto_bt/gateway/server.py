@@ -41,7 +41,7 @@ class ClientProtocol(asyncio.Protocol):
         """A client."""
         self._transport = cast(asyncio.Transport, transport)  # uvloop's own is no subclass
         hub = self._server.hub
-        _keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
+        keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
         self._session = hub.open(self._loop.time())
         if len(self._server.clients) >= 2 * hub.limits.clients and not self._server.let_one_go():
             self._transport.abort()  # so many that not even the error can be said to all
@@ -231,7 +231,7 @@ class Server:
             protocol.tick(now_s)
 
 
-def _keep_buffers_small(transport: asyncio.Transport, mark_bytes: int) -> None:
+def keep_buffers_small(transport: asyncio.Transport, mark_bytes: int) -> None:
     """Kernel and library would hide megabytes of stale values from a slow reader."""
     transport.set_write_buffer_limits(high=mark_bytes)
     connection = transport.get_extra_info("socket")

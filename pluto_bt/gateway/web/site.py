@@ -6,7 +6,7 @@ import socket
 
 from aiohttp import web
 
-from pluto_bt.gateway.server import Server
+from pluto_bt.gateway.server import Server, keep_buffers_small
 from pluto_bt.gateway.web.client import WebClient
 from pluto_bt.gateway.web.doorkeeper import Doorkeeper
 from pluto_bt.gateway.web.house import make_app
@@ -35,6 +35,6 @@ class Site:
         )
         await connection.prepare(request)
         if request.transport is not None:
-            request.transport.set_write_buffer_limits(high=limits.write_mark_bytes)
+            keep_buffers_small(request.transport, limits.write_mark_bytes)
         await WebClient(self._server, request, connection).serve()
         return connection
