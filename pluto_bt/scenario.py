@@ -68,13 +68,13 @@ class Play:
 
     def __call__(
         self,
-        world: str | None = None,
+        world: str | Path | None = None,
         *,
-        mission: str,
-        map: str | None = None,
+        mission: str | Path,
+        map: str | Path | None = None,
         ports: Mapping[str, Any] | None = None,
         seed: int | None = None,
-        platform: str | None = None,
+        platform: str | Path | None = None,
         start: str | None = None,
         tree: str | None = None,
         settings: Sequence[str] = (),
@@ -92,8 +92,8 @@ class Play:
         Raises: InputError with every fault of the files.
         """
         request = Request(
-            mission=mission, world=world, map=map, start=start, platform=platform, tree=tree, set=tuple(settings),
-            seed=None if seed is None else str(seed),
+            mission=str(mission), world=_as_typed(world), map=_as_typed(map), start=start, platform=_as_typed(platform), tree=tree, set=tuple(settings),
+            seed=_as_typed(seed),
             port=[f"{name}={text_of(value)}" for name, value in (ports or {}).items()],
         )  # fmt: skip
         events: list[Event] = []
@@ -104,3 +104,8 @@ class Play:
         runner = make_runner(inputs, nodes=leaves, on_event=events.append, **how)
         runner.run()
         return Run(runner, events)
+
+
+def _as_typed(given: object) -> str | None:
+    """An argument as it would stand on the command line."""
+    return None if given is None else str(given)
