@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from pluto_bt.modules.context import Context
-from pluto_bt.trees.contracts import Breach, ContractWatch, Kept
+from pluto_bt.trees.contracts import CONTRACT, Breach, ContractWatch, Kept
 from pluto_bt.trees.executive import Activity, Executive
-
-CONTRACT = "contract"
 
 
 class ContractGuardian:

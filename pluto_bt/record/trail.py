@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pluto_bt.record.entries import Link, Situation
 
 NO_TROUBLE = ("stopped", "stuck")
+BEGIN_NS = 1_000_000_000  # who complains while the first readings come, and no longer, has had no trouble
 AGAIN_NS = 3_000_000_000  # the same complaint so soon again is the same trouble: what tries again every second goes quiet meanwhile
 
 
@@ -50,11 +51,17 @@ class Trail:
     def _note(self, name: str, link: Link, t_ns: int) -> None:
         last = self.troubles.get(name)
         is_trouble = bool(link.reason) and link.reason not in NO_TROUBLE
-        if last is not None and last.until_ns is None and not (is_trouble and link.reason == last.link.reason):
-            self.troubles[name] = last = Trouble(last.link, last.since_ns, t_ns)
-        if is_trouble and (last is None or last.until_ns is not None):
+        if last is not None and last.until_ns is None:
+            if is_trouble and link.reason == last.link.reason:
+                return
+            last = Trouble(last.link, last.since_ns, t_ns) if t_ns > BEGIN_NS else None
+        if is_trouble:
             is_again = last is not None and last.link.reason == link.reason and t_ns - (last.until_ns or 0) <= AGAIN_NS
-            self.troubles[name] = Trouble(link, last.since_ns if last is not None and is_again else t_ns)
+            last = Trouble(link, last.since_ns if last is not None and is_again else t_ns)
+        if last is None:
+            self.troubles.pop(name, None)
+        else:
+            self.troubles[name] = last
 
 
 def _said(value: object) -> object:

@@ -10,11 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Final
 
 from pluto_bt.trees.errors import StepError
 from pluto_bt.trees.scopes import Scope
 from pluto_bt.trees.script import ScriptRunner
+
+CONTRACT: Final = "contract"  # the reason of a run that a broken one has ended
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from pluto_bt.blackboard.codes import status_name
 from pluto_bt.record.entries import Link
 from pluto_bt.record.trail import Trail, Trouble
 from pluto_bt.skills import reasons
+from pluto_bt.trees.contracts import CONTRACT
 from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, cure, meaning, rank
 
 LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
@@ -86,8 +87,8 @@ def explain(view: View) -> Answer:
 
 
 def _first(view: View) -> Cause | None:
-    """Where it began: a person, a module, a leaf, or what a sensor says; in this order, because each makes the next ones complain."""
-    return _person(view) or _leaf_error(view) or _module(view) or _sensor(view) or _plain_end(view)
+    """Where it began: a person or his rule, a leaf, a module, or what a sensor says; in this order, because each makes the next ones complain."""
+    return _person(view) or _contract(view) or _leaf_error(view) or _module(view) or _sensor(view) or _plain_end(view)
 
 
 def _person(view: View) -> Cause | None:
@@ -98,6 +99,12 @@ def _person(view: View) -> Cause | None:
     if view.paused:
         return _cause("operator", view.paused, f"the mission was paused: {view.paused}", _since(view, "mission"))
     return None
+
+
+def _contract(view: View) -> Cause | None:
+    """A rule of the mission that ended the run, whatever else was going on."""
+    word, text = view.trail.situation.ended
+    return _cause("run", word, text, _since(view, "ended")) if word == CONTRACT else None
 
 
 def _leaf_error(view: View) -> Cause | None:

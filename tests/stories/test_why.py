@@ -86,6 +86,24 @@ def acted(folder: Path, act: Callable[[System], None], at_s: float, until_s: flo
     return why_at(opened(folder / "a.mcap"), until_s - 0.2).causes
 
 
+def test_a_short_quiet_run_ends_for_want_of_time_alone(tmp_path: Path) -> None:
+    """Before the first scan avoidance complains of the laser; whoever asks three seconds later must not be sent to look at it."""
+    acted(tmp_path, lambda system: None, 9.0, 3.0)
+    answer = why_at(opened(tmp_path / "a.mcap"))
+    assert answer.first is not None and (answer.first.layer, answer.first.code) == ("run", "max-time"), answer
+
+
+def test_a_broken_contract_is_why_the_run_has_ended(scenario: Play, tmp_path: Path) -> None:
+    """Whatever else there was to complain of: here the laser, slowing the robot before a wall."""
+    (tmp_path / "w.xml").write_text(WALLED, encoding="utf-8")
+    rule, leaf = '<Contract name="this side" always="@Localization_Pose_x < 0"/>', '<HoldHeading heading_deg="0" speed_mps="0.9" duration_s="60"/>'
+    (tmp_path / "m.xml").write_text(f'<root BTCPP_format="4">{rule}<BehaviorTree ID="m">{leaf}</BehaviorTree></root>', encoding="utf-8")
+    run = scenario(tmp_path / "w.xml", mission=tmp_path / "m.xml", start="-5,0,0", platform="pioneer", record=tmp_path / "a.mcap")
+    causes = why_at(opened(tmp_path / "a.mcap")).causes
+    assert run.reason == "contract" and (causes[0].layer, causes[0].code) == ("run", "contract"), causes
+    assert "this side" in causes[0].text and causes[0].unblock
+
+
 def test_a_stop_and_an_emergency_stop_are_an_operators(tmp_path: Path) -> None:
     causes = acted(tmp_path, lambda system: system.operator_stop("anna"), 3.0, 6.0)
     assert (causes[0].layer, causes[0].code, causes[0].since_s) == ("operator", "operator-stop", pytest.approx(3.0, abs=0.2))
