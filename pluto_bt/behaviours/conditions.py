@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 
 from py_trees.common import Status
 
@@ -19,9 +20,9 @@ class Condition(Leaf):
 
     KIND = "Condition"  # for `pluto nodes` and Groot2
 
+    @abstractmethod
     def ask(self, robot: Robot) -> tuple[bool, str]:
         """(is it so, a short text)."""
-        raise NotImplementedError
 
     def update(self) -> Status:
         """SUCCESS or FAILURE."""

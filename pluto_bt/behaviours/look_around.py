@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import ClassVar, Final
 
 from py_trees.common import Status
@@ -35,9 +36,9 @@ class WristTour(Leaf):
         self._next, self._since_s, self._there_s = -1, self.now_s(), math.inf
         self._has_pointed = False
 
+    @abstractmethod
     def targets(self) -> list[Pair]:
         """(pan, tilt) in radians, one after the other."""
-        raise NotImplementedError
 
     def go_on(self, robot: Robot) -> bool:
         """Go on with the tour; True when it is over."""

@@ -7,6 +7,7 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Mapping
 from typing import ClassVar, Final
 
@@ -92,13 +93,13 @@ class MotionLeaf(Leaf):
             robot.command(0)
         self._moves = False
 
+    @abstractmethod
     def begin(self, robot: Robot) -> Status | None:
         """Give the first command. A status ends the leaf at once."""
-        raise NotImplementedError
 
+    @abstractmethod
     def follow(self, robot: Robot) -> Status:
         """Watch, and command again where the leaf must."""
-        raise NotImplementedError
 
     def resume(self, robot: Robot) -> None:
         """After a pause: command again what stood before it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Final
 
 from py_trees.common import Status
@@ -36,9 +37,9 @@ class Planning(Leaf):
         """Time counts from the first tick."""
         self._start_s = self.now_s()
 
+    @abstractmethod
     def plan(self, robot: Robot) -> Status:
         """Plan; the robot's pose is known."""
-        raise NotImplementedError
 
     def update(self) -> Status:
         """Wait for a pose, or plan."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 from py_trees.common import Status
 
 from pluto_bt.behaviours.destinations import Destination
@@ -19,9 +21,9 @@ DISTANCE = {"reset_distance": Port(float, False, "side of the square", 1.0, unit
 class ClearCostmap(Leaf):
     """Forgets something that was seen; SUCCESS at once."""
 
+    @abstractmethod
     def forget(self, robot: Robot) -> None:
         """Do it."""
-        raise NotImplementedError
 
     def update(self) -> Status:
         """Forget."""
