@@ -20,8 +20,8 @@ from pluto_bt.behaviours.plan_path import Planning
 from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
+from pluto_bt.commands.doors import groot_address, web_address
 from pluto_bt.commands.inputs import Inputs
-from pluto_bt.commands.option_values import groot_address, web_address
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.audit import default_path
 from pluto_bt.gateway.listen import Address, is_free, parse_address

@@ -92,8 +92,8 @@ class Play:
         Raises: InputError with every fault of the files.
         """
         request = Request(
-            mission=str(mission), world=_as_typed(world), map=_as_typed(map), start=start, platform=_as_typed(platform), tree=tree, set=tuple(settings),
-            seed=_as_typed(seed),
+            mission=str(mission), world=_as_typed(world), map=_as_typed(map), start=start, platform=_as_typed(platform), tree=tree,
+            seed=_as_typed(seed), set=tuple(settings),
             port=[f"{name}={text_of(value)}" for name, value in (ports or {}).items()],
         )  # fmt: skip
         events: list[Event] = []

@@ -34,7 +34,7 @@ def main(argv: list[str]) -> int:
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)
     if args.web is not None:
-        from pluto_bt.commands.option_values import check_web
+        from pluto_bt.commands.doors import check_web
 
         check_web(args.web, faults)
     faults.raise_errors()
@@ -70,7 +70,7 @@ def show(box: Box, number: int) -> int:
 def show_in_browser(box: Box, name: str, address: str) -> int:
     """Serve the console on the recording until Ctrl-C."""
     from pluto_bt.box_moments import Moments
-    from pluto_bt.commands.option_values import web_address
+    from pluto_bt.commands.doors import web_address
     from pluto_bt.gateway.listen import Address, open_listener
     from pluto_bt.gateway.web.recorded import RecordedSite
 

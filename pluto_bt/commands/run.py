@@ -30,6 +30,7 @@ def main(argv: list[str]) -> int:
 
 
 def _parser() -> Parser:
+    from pluto_bt.commands.doors import add_door_options
     from pluto_bt.commands.inputs import add_input_options
 
     parser = Parser(prog="pluto run", description="Run a mission in a simulated world.")
@@ -43,14 +44,7 @@ def _parser() -> Parser:
     parser.add_argument("--record", metavar="FILE.mcap", help="write a black box, for `pluto replay`, `pluto why` and Foxglove")
     parser.add_argument("--resume", choices=("hold", "ask", "resume"), help="keep a journal; after a crash stay still, ask, or go on where it was")
     parser.add_argument("--journal", metavar="FILE", help="with --resume: where the journal lies (default: one for each mission in the state folder)")
-    parser.add_argument("--gateway", metavar="HOST:PORT", help="serve the TCP/XML gateway (default with --realtime: 127.0.0.1:7500)")
-    parser.add_argument("--web", metavar="HOST:PORT", help="serve the web console, such as 127.0.0.1:7580")
-    parser.add_argument("--gateway-tls", metavar="CERT,KEY[,CA]", help="PEM files: serve TLS; with CA, client certificates are accepted too")
-    parser.add_argument("--gateway-tokens", metavar="FILE.toml", help="who may come in: a table for each person, with token and scopes")
-    parser.add_argument("--gateway-audit", metavar="FILE.jsonl", help="log of every control message (default: in the state folder)")
-    parser.add_argument("--ssh", metavar="HOST:PORT", help="serve the shell by ssh, for who has a key; such as 127.0.0.1:7522")
-    parser.add_argument("--ssh-keys", metavar="FILE", help="with --ssh: the public keys that may come in (default: ~/.ssh/authorized_keys)")
-    parser.add_argument("--groot", metavar="[HOST:]PORT", help="serve Groot2's live monitor, read-only (Groot2's own port is 1667)")
+    add_door_options(parser)
     parser.add_argument("--json", action="store_true", help="end with one JSON object on the last line")
     return parser
 
@@ -87,23 +81,16 @@ def _resume(args: argparse.Namespace) -> ResumeRequest | None:
 
 
 def _run(args: argparse.Namespace) -> RunResult:
+    from pluto_bt.commands.doors import check_doors
     from pluto_bt.commands.files import refuse_shadowed_packages
     from pluto_bt.commands.inputs import Request, read_inputs
-    from pluto_bt.commands.option_values import check_gateway, check_groot, check_web, read_positive, read_ssh
+    from pluto_bt.commands.option_values import read_positive
     from pluto_bt.commands.outputs import check_outputs
-    from pluto_bt.gateway.access import read_access
 
     refuse_shadowed_packages()
     faults = Faults()
     check_outputs(args, faults)
-    access_faults = Faults()
-    access = read_access(args.gateway_tls, args.gateway_tokens, access_faults)
-    faults.extend(access_faults.in_order())
-    if not access_faults.has_errors:
-        check_gateway(args.gateway, access, faults)
-        check_web(args.web, faults, access)
-    check_groot(args.groot, faults)
-    ssh = read_ssh(args.ssh, args.ssh_keys, faults)
+    doors = check_doors(args, faults)
     speed, max_time_s = read_positive(args.speed, "--speed", faults), read_positive(args.max_time, "--max-time", faults)
     inputs = read_inputs(Request.of(args), faults=faults)
     for warning in inputs.warnings:
@@ -113,8 +100,8 @@ def _run(args: argparse.Namespace) -> RunResult:
     progress = _progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
-        resume=_resume(args), gateway=args.gateway, gateway_access=access, gateway_audit=args.gateway_audit, web=args.web,
-        groot=args.groot, ssh=ssh, on_event=progress.event, on_progress=progress.show, on_compiling=_tell_of_compilation,
+        resume=_resume(args), gateway=args.gateway, gateway_access=doors.access, gateway_audit=args.gateway_audit, web=args.web,
+        groot=args.groot, ssh=doors.ssh, on_event=progress.event, on_progress=progress.show, on_compiling=_tell_of_compilation,
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

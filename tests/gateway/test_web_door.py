@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 from pluto_bt.blackboard import messages as m
-from pluto_bt.commands.option_values import check_web
+from pluto_bt.commands.doors import check_web
 from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
