@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 
 from py_trees.common import Status
 
-from pluto_bt.trees.engine.node import DecoratorNode, reset, start
-from pluto_bt.trees.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.engine.node import DecoratorNode, start
+from pluto_bt.trees.engine.status import RUNNING, SKIPPED, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.values import BOOL
 
@@ -29,11 +29,8 @@ class RunOnce(DecoratorNode):
             self.status = self.answer
             return self.answer
         start(self)
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is not RUNNING:
-            self.answer = self.status = SUCCESS if result is SUCCESS else FAILURE
-            reset(self.child)
-            self.feedback_message = f"done once: {'SUCCESS' if result is SUCCESS else 'FAILURE'}"
+        result = self.pass_on()
+        if result is not SKIPPED and result is not RUNNING:
+            self.answer = self.status
+            self.feedback_message = f"done once: {self.answer.name}"
         return result

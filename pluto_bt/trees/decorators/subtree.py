@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from pluto_bt.trees.engine.node import DecoratorNode, reset
-from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result
+from pluto_bt.trees.engine.node import DecoratorNode
+from pluto_bt.trees.engine.status import IDLE, RUNNING, Result
 
 
 class SubTree(DecoratorNode):
@@ -22,10 +22,4 @@ class SubTree(DecoratorNode):
         if self.status is IDLE:
             self.status = RUNNING
             self.last = IDLE
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is not RUNNING:
-            reset(self.child)
-        self.status = result
-        return result
+        return self.pass_on()

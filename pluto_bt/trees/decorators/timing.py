@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.context import Timer
 from pluto_bt.trees.engine.node import DecoratorNode, reset, start
-from pluto_bt.trees.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.engine.status import FAILURE, RUNNING, SKIPPED, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.values import UINT
 
@@ -47,13 +47,9 @@ class Timeout(Timed):
             self.started = False
             self.status = FAILURE
             return FAILURE
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is not RUNNING:
+        result = self.pass_on()
+        if result is not SKIPPED and result is not RUNNING:
             self.forget()
-            reset(self.child)
-            self.status = SUCCESS if result is SUCCESS else FAILURE
         return result
 
     def _expire(self) -> None:
@@ -83,13 +79,9 @@ class Delay(Timed):
                 self.timer = self.context.call_in(delay_ms / 1000, self._wake)
         if not self.over:
             return RUNNING
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is not RUNNING:
+        result = self.pass_on()
+        if result is not SKIPPED and result is not RUNNING:
             self.started = False
-            reset(self.child)
-            self.status = SUCCESS if result is SUCCESS else FAILURE
         return result
 
     def _wake(self) -> None:

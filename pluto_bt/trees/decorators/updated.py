@@ -51,9 +51,6 @@ class EntryUpdated(DecoratorNode):
         self.working = result is RUNNING
         if result is SKIPPED:
             return self.skip()
-        if result is RUNNING:
-            self.status = RUNNING
-            return RUNNING
         self.status = result
         return result
 

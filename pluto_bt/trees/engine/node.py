@@ -221,6 +221,16 @@ class DecoratorNode(Node):
         self.children.append(child)
         child.parent = self
 
+    def pass_on(self) -> Result:
+        """Step the child and answer as it does; a child that has ended is then IDLE again."""
+        result: Result = self.child.step()
+        if result is SKIPPED:
+            return self.skip()
+        if result is not RUNNING:
+            reset(self.child)
+        self.status = result
+        return result
+
     def halt(self) -> None:
         """Halt the child if it runs."""
         self.forget()

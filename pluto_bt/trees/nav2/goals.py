@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar, Final
 
 from pluto_bt.behaviours.destinations import Destination, Destinations
-from pluto_bt.trees.engine.node import DecoratorNode, reset, start
-from pluto_bt.trees.engine.status import IDLE, RUNNING, SKIPPED, Result
+from pluto_bt.trees.engine.node import DecoratorNode, start
+from pluto_bt.trees.engine.status import IDLE, RUNNING, Result
 from pluto_bt.trees.ports import PortModel, PortProblem
 from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.scopes import EMPTY, MissingValue, Scope
@@ -60,13 +60,7 @@ class GoalUpdatedController(DecoratorNode):
         start(self)
         if not (is_first or has_changed or self.child.status is RUNNING):
             return RUNNING
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is not RUNNING:
-            reset(self.child)
-        self.status = result
-        return result
+        return self.pass_on()
 
 
 class GoalUpdater(DecoratorNode):
@@ -93,13 +87,7 @@ class GoalUpdater(DecoratorNode):
             chosen = newer if newer is not None and (given is None or not newer.stamp_ns or newer.stamp_ns > given.stamp_ns) else given
             if chosen is not None:
                 self.write(f"output_{what}", chosen)
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is not RUNNING:
-            reset(self.child)
-        self.status = result
-        return result
+        return self.pass_on()
 
     def _given(self, port: str) -> Any:
         try:

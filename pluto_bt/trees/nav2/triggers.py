@@ -37,14 +37,9 @@ class SingleTrigger(DecoratorNode):
         if not self.is_armed:
             self.status = FAILURE
             return FAILURE
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is RUNNING:
-            return RUNNING
-        reset(self.child)
-        self.is_armed = False
-        self.status = result
+        result = self.pass_on()
+        if result is not SKIPPED and result is not RUNNING:
+            self.is_armed = False
         return result
 
     def _run(self) -> Any:
@@ -73,14 +68,9 @@ class PathLongerOnApproach(DecoratorNode):
             reset(self.child)  # the long way is no longer proposed: what was begun about it is given up
             self.status = SUCCESS
             return SUCCESS
-        result: Result = self.child.step()
-        if result is SKIPPED:
-            return self.skip()
-        if result is RUNNING:
-            return RUNNING
-        self.before = path
-        reset(self.child)
-        self.status = result
+        result = self.pass_on()
+        if result is not SKIPPED and result is not RUNNING:
+            self.before = path
         return result
 
     def _path(self) -> MapPath:
