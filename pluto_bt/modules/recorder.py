@@ -14,7 +14,8 @@ from pluto_bt.modules.notebook import Heard
 from pluto_bt.modules.record_parameters import RecordParameters
 from pluto_bt.record.codec import encode, schema_of
 from pluto_bt.record.entries import RUN, TICK, TREE, Run, Tick, Tree
-from pluto_bt.record.mcap_writer import Bulk, McapWriter
+from pluto_bt.record.mcap_chunk import Bulk
+from pluto_bt.record.mcap_writer import McapWriter
 from pluto_bt.runtime.clock import NS
 
 MIB = 1 << 20

@@ -7,22 +7,16 @@ The format: https://mcap.dev/spec. A file that was not finished (a crash) can be
 from __future__ import annotations
 
 import os
-import struct
-import zlib
 from collections import Counter
-from dataclasses import dataclass, field
-from enum import IntEnum
 from pathlib import Path
 from typing import IO
 
 import zstandard
 from mcap.data_stream import RecordBuilder
-from mcap.opcode import Opcode
 from mcap.records import (
     Attachment,
     AttachmentIndex,
     Channel,
-    ChunkIndex,
     DataEnd,
     Footer,
     Header,
@@ -33,46 +27,13 @@ from mcap.records import (
     Statistics,
 )
 
+from pluto_bt.record.mcap_chunk import Bulk, OpenChunk, WrittenChunk, packed, that_fit
+
 MAGIC = b"\x89MCAP0\r\n"
 PROFILE = "pluto"
 CHUNK_BYTES = 256 * 1024
 CHUNK_NS = 2_000_000_000  # older messages than this do not wait for a full chunk
 KEPT_SHARE = 0.75  # of the limit, once it was reached: else each new chunk would cost a copy of the file
-_MESSAGE = struct.Struct("<BQHIQQ")
-_CHUNK = struct.Struct("<BQQQQI")
-
-
-class Bulk(IntEnum):
-    """What a message is worth when room runs out; the highest goes first."""
-
-    KEPT = 0  # what the rest cannot be read without: never dropped
-    LOG = 1  # ticks, commands, events
-    WHOLE = 2  # topics that a leaf reads: without them a run can be looked at, but not be executed again
-    THINNED = 3  # a sample now and then of all other topics
-
-
-@dataclass
-class _OpenChunk:
-    """Messages on their way into a chunk."""
-
-    records: bytearray = field(default_factory=bytearray)
-    index: dict[int, list[tuple[int, int]]] = field(default_factory=dict)
-    start_ns: int = 0
-    end_ns: int = 0
-
-
-@dataclass
-class _Written:
-    """A chunk on disk with its message indexes."""
-
-    bulk: Bulk
-    at: ChunkIndex
-    counts: Counter[int]
-
-    @property
-    def length(self) -> int:
-        """Bytes of the chunk and its message indexes."""
-        return self.at.chunk_length + self.at.message_index_length
 
 
 class McapWriter:
@@ -87,8 +48,8 @@ class McapWriter:
         self._channels: list[Channel] = []
         self._attachments: list[AttachmentIndex] = []
         self._metadata: list[MetadataIndex] = []
-        self._open = {bulk: _OpenChunk() for bulk in Bulk}
-        self._chunks: list[_Written] = []
+        self._open = {bulk: OpenChunk() for bulk in Bulk}
+        self._chunks: list[WrittenChunk] = []
         self._preamble = 0  # bytes before the first chunk, and of channels between chunks: never dropped
         self._file.write(MAGIC)
         self._put(Header(PROFILE, library))
@@ -109,12 +70,7 @@ class McapWriter:
     def message(self, channel: int, bulk: Bulk, time_ns: int, sequence: int, data: bytes) -> None:
         """Add a message; it is on disk with its chunk."""
         chunk = self._open[bulk]
-        if not chunk.records:
-            chunk.start_ns = chunk.end_ns = time_ns
-        chunk.index.setdefault(channel, []).append((time_ns, len(chunk.records)))
-        chunk.records += _MESSAGE.pack(Opcode.MESSAGE, 22 + len(data), channel, sequence & 0xFFFFFFFF, time_ns, time_ns)
-        chunk.records += data
-        chunk.start_ns, chunk.end_ns = min(chunk.start_ns, time_ns), max(chunk.end_ns, time_ns)
+        chunk.add(channel, time_ns, sequence, data)
         if len(chunk.records) >= CHUNK_BYTES:
             self._close_chunk(bulk)
 
@@ -165,22 +121,10 @@ class McapWriter:
         chunk = self._open[bulk]
         if not chunk.records:
             return
-        self._open[bulk] = _OpenChunk()
-        self._write_chunk(bulk, bytes(chunk.records), chunk)
-
-    def _write_chunk(self, bulk: Bulk, records: bytes, chunk: _OpenChunk) -> None:
-        packed, kind, at = self._compress(records), b"zstd", self._file.tell()
-        length = 8 + 8 + 8 + 4 + 4 + len(kind) + 8 + len(packed)
-        head = _CHUNK.pack(Opcode.CHUNK, length, chunk.start_ns, chunk.end_ns, len(records), zlib.crc32(records))
-        self._file.write(b"".join((head, struct.pack("<I", len(kind)), kind, struct.pack("<Q", len(packed)), packed)))
-        indexes_at, offsets = self._file.tell(), {}
-        for channel, entries in chunk.index.items():
-            offsets[channel] = self._file.tell()
-            flat = [number for entry in entries for number in entry]
-            self._file.write(struct.pack(f"<BQHI{len(flat)}Q", Opcode.MESSAGE_INDEX, 6 + 8 * len(flat), channel, 8 * len(flat), *flat))
-        index = ChunkIndex(indexes_at - at, at, kind.decode(), len(packed), chunk.end_ns, self._file.tell() - indexes_at, offsets, chunk.start_ns,
-                           len(records))  # fmt: skip
-        self._chunks.append(_Written(bulk, index, Counter({channel: len(entries) for channel, entries in chunk.index.items()})))
+        self._open[bulk] = OpenChunk()
+        data, written = packed(bulk, chunk, self._file.tell(), self._compress)
+        self._file.write(data)
+        self._chunks.append(written)
 
     def _summary(self) -> list[McapRecord]:
         counts: Counter[int] = sum((chunk.counts for chunk in self._chunks), Counter())
@@ -204,7 +148,7 @@ class McapWriter:
 
     def _shrink(self) -> None:
         """Copy the file without its oldest, bulkiest chunks; the old one stays until the new one is whole."""
-        kept = self._kept()
+        kept = that_fit(self._chunks, KEPT_SHARE * self.limit_bytes - self._preamble)
         if len(kept) == len(self._chunks):
             return
         self._file.flush()
@@ -215,23 +159,14 @@ class McapWriter:
             self._file, self._preamble = new, 0
             self._begin_again(old)
             for chunk in kept:
-                self._copy(old, chunk)
+                old.seek(chunk.at.chunk_start_offset)
+                data = old.read(chunk.length)
+                chunk.move_to(self._file.tell())
+                self._file.write(data)
             new.flush()
         self.dropped += len(self._chunks) - len(kept)
         self._chunks = kept
         os.replace(draft, self.path)
-
-    def _kept(self) -> list[_Written]:
-        """What fits: of the oldest, what is worth least goes first; the newest chunk of each kind stays."""
-        size, wanted = self._preamble + sum(chunk.length for chunk in self._chunks), KEPT_SHARE * self.limit_bytes
-        newest = {chunk.bulk: number for number, chunk in enumerate(self._chunks)}
-        gone: set[int] = set()
-        for bulk in (Bulk.THINNED, Bulk.WHOLE, Bulk.LOG):
-            for number, chunk in enumerate(self._chunks):
-                if size > wanted and chunk.bulk is bulk and number != newest[bulk]:
-                    gone.add(number)
-                    size -= chunk.length
-        return [chunk for number, chunk in enumerate(self._chunks) if number not in gone]
 
     def _begin_again(self, old: IO[bytes]) -> None:
         """Everything but chunks, in front."""
@@ -247,10 +182,3 @@ class McapWriter:
             index.offset = self._file.tell()
             self._file.write(data)
             self._preamble += len(data)
-
-    def _copy(self, old: IO[bytes], chunk: _Written) -> None:
-        old.seek(chunk.at.chunk_start_offset)
-        moved = self._file.tell() - chunk.at.chunk_start_offset
-        self._file.write(old.read(chunk.length))
-        chunk.at.chunk_start_offset += moved
-        chunk.at.message_index_offsets = {channel: at + moved for channel, at in chunk.at.message_index_offsets.items()}

@@ -5,8 +5,9 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from pluto_bt.record.mcap_chunk import Bulk
 from pluto_bt.record.mcap_reader import McapFile
-from pluto_bt.record.mcap_writer import Bulk, McapWriter
+from pluto_bt.record.mcap_writer import McapWriter
 
 
 def repair(file: McapFile, to: Path) -> int:

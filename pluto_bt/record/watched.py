@@ -8,7 +8,8 @@ from typing import Final
 from pluto_bt.blackboard import TOPICS, Sample
 from pluto_bt.record.codec import encode, schema_of
 from pluto_bt.record.entries import RUN, WATCHED, Run
-from pluto_bt.record.mcap_writer import Bulk, McapWriter
+from pluto_bt.record.mcap_chunk import Bulk
+from pluto_bt.record.mcap_writer import McapWriter
 from pluto_bt.runtime.clock import NS
 
 KINDS: Final = {topic.name: topic.type for topic in TOPICS}

@@ -14,8 +14,9 @@ from mcap.reader import make_reader
 from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.messages import LaserScan, Message, Pose, SonarState, TreeState, read_only
 from pluto_bt.record.codec import decode, encode, schema_of
+from pluto_bt.record.mcap_chunk import Bulk
 from pluto_bt.record.mcap_reader import McapFile
-from pluto_bt.record.mcap_writer import CHUNK_NS, Bulk, McapWriter
+from pluto_bt.record.mcap_writer import CHUNK_NS, McapWriter
 from pluto_bt.record.repair import repair
 
 FLOATS = st.floats(width=64)  # with NaN and the infinities
