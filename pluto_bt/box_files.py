@@ -13,7 +13,7 @@ from pluto_bt.commands.inputs import Inputs
 from pluto_bt.modules.robot_file import SHIPPED
 from pluto_bt.record.entries import Run
 from pluto_bt.resume import Resumption
-from pluto_bt.system import RecordRequest
+from pluto_bt.run_options import RecordRequest
 from pluto_bt.trees import Mission
 
 

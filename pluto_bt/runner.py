@@ -32,8 +32,9 @@ from pluto_bt.modules.journal_keeper import JournalKeeper
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.resume import ResumeRequest, Resumption, decide
+from pluto_bt.run_options import Options
 from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, calendar_ns
-from pluto_bt.system import Options, System
+from pluto_bt.system import System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.executive import ABORTED, SUCCEEDED
 from pluto_bt.trees.journal import Journal

@@ -7,23 +7,18 @@ below, so that a status reaches the top in one go; a command wakes each link on 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox
-from pluto_bt.blackboard.messages import ActuatorState, Event
-from pluto_bt.gateway.access import Access
-from pluto_bt.gateway.listen import Address
-from pluto_bt.gateway.ssh_link import SshRequest
+from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.guard import Guard
-from pluto_bt.maps.world import World
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.notebook import Notebook
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.robot_link import RobotLink
-from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock
+from pluto_bt.run_options import Options
+from pluto_bt.runtime.clock import NS, MonotonicClock, VirtualClock
 from pluto_bt.runtime.latch import OPERATOR_STOP, SafetyLatch
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.supervision import Part
@@ -31,11 +26,9 @@ from pluto_bt.runtime.table import Module, in_start_order
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.trace import Trace
 from pluto_bt.track import Track
-from pluto_bt.trees import Mission, load_mission
 
 if TYPE_CHECKING:
     from pluto_bt.modules.recorder import Recorder
-    from pluto_bt.record.entries import Run
 
 # fmt: off
 MODULES: tuple[Module, ...] = (
@@ -71,46 +64,6 @@ INBOXES = {  # link -> the link above, which owns its inbox
 }  # fmt: skip
 
 
-class RecordRequest(NamedTuple):
-    """What the recorder is to write where: the run, and the files it is made of."""
-
-    path: Path
-    run: Run
-    files: dict[str, bytes]
-
-
-@dataclass
-class Options:
-    """What a run is made of."""
-
-    world: World
-    robot: RobotFile
-    params_path: Path | None = None
-    map: World | None = None
-    start: tuple[float, float, float] | None = None
-    seed: int = 0
-    max_time_s: float | None = None
-    trace_path: Path | None = None
-    has_gateway: bool = False
-    gateway: Address | None = None
-    gateway_access: Access | None = None
-    gateway_audit: Path | None = None
-    web: Address | None = None
-    groot: Address | None = None
-    ssh: SshRequest | None = None
-    record: RecordRequest | None = None
-    own_clock: StepClock | None = None
-    load: Callable[..., Mission] = load_mission
-    on_event: Callable[[Event], None] = lambda event: None
-    on_progress: Callable[[System], None] = lambda system: None
-    on_compiling: Callable[[], None] = lambda: None  # told before the run, if kernels must be compiled first
-
-    @property
-    def takes_orders(self) -> bool:
-        """True if people or programs can command while it runs."""
-        return self.has_gateway or self.web is not None
-
-
 class System:
     """One robot in one world."""
 
@@ -129,8 +82,7 @@ class System:
         self.latch = SafetyLatch()
         self.inboxes = {link: Inbox(link, self._owner_rule(link, above)) for link, above in INBOXES.items()}
         self.context = self._make_context()
-        asked = {"gateway": options.takes_orders, "recorder": options.record is not None, "groot": options.groot is not None, "ssh": options.ssh is not None, "arm": options.robot.devices.arm is not None}
-        has = {*self.simulator.devices, *(name for name, is_asked in asked.items() if is_asked)}
+        has = {*self.simulator.devices, *options.asked_modules}
         self._make_parts([row for row in modules if not row.device or row.device in has])
         self._join()
 

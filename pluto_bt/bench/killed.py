@@ -24,9 +24,10 @@ import numpy as np
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import load_robot_file
+from pluto_bt.run_options import Options
 from pluto_bt.runtime.clock import MonotonicClock, VirtualClock, wait
 from pluto_bt.runtime.lockstep import Lockstep
-from pluto_bt.system import Options, System
+from pluto_bt.system import System
 from sim.motors import STOP, Motors
 from sim.simtime import TICK_NS, SimTime
 

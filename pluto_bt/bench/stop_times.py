@@ -16,9 +16,10 @@ from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.maps.world import At, FaultAction, Shape, World
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.modules.robot_file import load_robot_file
+from pluto_bt.run_options import Options
 from pluto_bt.runtime.clock import NS, VirtualClock
 from pluto_bt.runtime.lockstep import Lockstep
-from pluto_bt.system import Options, System
+from pluto_bt.system import System
 
 TRIALS = 1000
 TRIAL_S, JITTER_S, FAULT_S, FIRST_S = 1.7, 0.3, 0.6, 2.0

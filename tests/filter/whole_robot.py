@@ -10,8 +10,9 @@ import numpy as np
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import load_robot_file
+from pluto_bt.run_options import Options
 from pluto_bt.runtime.clock import NS, VirtualClock
-from pluto_bt.system import Options, System
+from pluto_bt.system import System
 
 CHAIN = ("motion", "avoid", "drive", "filter")
 

@@ -1,0 +1,70 @@
+"""What a run is made of: what the command line, a test or a benchmark asks of the `System`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from pluto_bt.blackboard.messages import Event
+from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.ssh_link import SshRequest
+from pluto_bt.maps.world import World
+from pluto_bt.modules.robot_file import RobotFile
+from pluto_bt.runtime.clock import StepClock
+from pluto_bt.trees import Mission, load_mission
+
+if TYPE_CHECKING:
+    from pluto_bt.record.entries import Run
+    from pluto_bt.system import System
+
+
+class RecordRequest(NamedTuple):
+    """What the recorder is to write where: the run, and the files it is made of."""
+
+    path: Path
+    run: Run
+    files: dict[str, bytes]
+
+
+@dataclass
+class Options:
+    """What a run is made of."""
+
+    world: World
+    robot: RobotFile
+    params_path: Path | None = None
+    map: World | None = None
+    start: tuple[float, float, float] | None = None
+    seed: int = 0
+    max_time_s: float | None = None
+    trace_path: Path | None = None
+    has_gateway: bool = False
+    gateway: Address | None = None
+    gateway_access: Access | None = None
+    gateway_audit: Path | None = None
+    web: Address | None = None
+    groot: Address | None = None
+    ssh: SshRequest | None = None
+    record: RecordRequest | None = None
+    own_clock: StepClock | None = None
+    load: Callable[..., Mission] = load_mission
+    on_event: Callable[[Event], None] = lambda event: None
+    on_progress: Callable[[System], None] = lambda system: None
+    on_compiling: Callable[[], None] = lambda: None  # told before the run, if kernels must be compiled first
+
+    @property
+    def asked_modules(self) -> set[str]:
+        """The modules that are there because somebody asked for them, or because of what is fixed to the robot and is no device of the simulator."""
+        asked = {
+            "gateway": self.takes_orders, "recorder": self.record is not None, "groot": self.groot is not None, "ssh": self.ssh is not None,
+            "arm": self.robot.devices.arm is not None,
+        }  # fmt: skip
+        return {name for name, is_asked in asked.items() if is_asked}
+
+    @property
+    def takes_orders(self) -> bool:
+        """True if people or programs can command while it runs."""
+        return self.has_gateway or self.web is not None
