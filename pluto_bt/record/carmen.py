@@ -1,7 +1,7 @@
 """A black box as a log of CARMEN, as SLAM programs and benchmarks read it: odometry (`ODOM`) and laser scans (`FLASER`) as lines of text.
 
 A line of CARMEN says of a scan no angles: its beams cover the half circle in front from right to left. So only such scans can be told,
-and only those that were taken level: one that looks down would draw walls where the ground is.
+and only those that were taken level.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ import numpy as np
 from pluto_bt.blackboard import Sample
 from pluto_bt.blackboard.messages import ActuatorState, LaserPose, LaserScan, Pose
 from pluto_bt.record.box import Box
+from pluto_bt.record.scans import LASER, SAME_S, SCAN, is_level, placed
 
-SCAN, LASER, ODOMETRY, SPEED = "sick/scan", "Localization/Laser_Pose", "Localization/Dead-Reckoning", "ATRV2/Drive/Raw"
+ODOMETRY, SPEED = "Localization/Dead-Reckoning", "ATRV2/Drive/Raw"
 HALF_CIRCLE_RAD: Final = math.pi
-LEVEL_RAD: Final = math.radians(1.0)
-SAME_S: Final = 1e-6  # two stamps of one moment
 NEAR_S: Final = 0.6  # no pose is interpolated over a longer gap
 HOST: Final = "pluto"
 
@@ -36,17 +35,14 @@ def carmen_log(box: Box) -> CarmenLog:
     """All that CARMEN has a line for."""
     samples = box.samples((SCAN, LASER, ODOMETRY, SPEED))
     odometry = _Odometry(samples[ODOMETRY], samples[SPEED])
-    lasers = {round(sample.value.stamp_s / SAME_S): sample.value for sample in samples[LASER] if isinstance(sample.value, LaserPose)}
     timed = list(odometry.lines())
     left_out: dict[str, int] = {}
-    for sample in samples[SCAN]:
-        scan = sample.value
-        if isinstance(scan, LaserScan):
-            line = _scan_line(scan, lasers.get(round(scan.stamp_s / SAME_S)), odometry)
-            if line.startswith("FLASER"):
-                timed.append((scan.stamp_s, line))
-            else:
-                left_out[line] = left_out.get(line, 0) + 1
+    for scan, laser in placed(samples[SCAN], samples[LASER]):
+        line = _scan_line(scan, laser, odometry)
+        if line.startswith("FLASER"):
+            timed.append((scan.stamp_s, line))
+        else:
+            left_out[line] = left_out.get(line, 0) + 1
     return CarmenLog([line for _, line in sorted(timed)], left_out)
 
 
@@ -57,7 +53,7 @@ def _scan_line(scan: LaserScan, laser: LaserPose | None, odometry: _Odometry) ->
         return "no pose of their moment was recorded (record.thinned_period_s=0.01 keeps every one)"
     if abs(scan.angle_step_rad * (len(scan.ranges_m) - 1) - HALF_CIRCLE_RAD) > 1.5 * scan.angle_step_rad:
         return "they do not cover a half circle"
-    if max(abs(math.remainder(angle, math.tau)) for angle in laser.pose[4:6]) > LEVEL_RAD:
+    if not is_level(laser):
         return "they were not level"
     if not (scan.ranges_m > 0.0).all():
         return "the laser had failed"

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from pluto_bt.blackboard.codes import CommandType, MotionCommand
-from pluto_bt.blackboard.messages import ActuatorState, FloatArray, LaserPose, LaserScan, Pose
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, Pose
 from pluto_bt.record.box import Box
 from pluto_bt.record.entries import STATUS_OF_LETTER, Posted
+from pluto_bt.record.scans import LASER, SCAN, is_level, placed
 from pluto_bt.record.story import leaves
 
-SCAN, LASER = "sick/scan", "Localization/Laser_Pose"
 NO_RETURN_M: Final = 79.0  # the lasers of our logs say 80 m and more for nothing met
-LEVEL: Final = 0.02  # sine of the tilt
 POSE, ASKED, GIVEN, DRIVEN = "Localization/Pose", "drive/command", "ATRV2/Drive/Command", "ATRV2/Drive/Raw"
 VELOCITIES: Final = {ASKED: "asked of the drive", GIVEN: "given to the base", DRIVEN: "driven"}
 LINKS: Final = ("motion", "avoidance", "drive", "filter")
@@ -58,15 +58,12 @@ def track_of(box: Box) -> FloatArray:
 def seen_of(box: Box, most: int = 400) -> FloatArray:
     """(n, 2) m: where the beams of up to `most` level scans ended, all beams but those that met nothing."""
     samples = box.samples([SCAN, LASER])
-    lasers = {sample.value.stamp_s: sample.value.pose for sample in samples[LASER] if isinstance(sample.value, LaserPose)}
-    scans = [sample.value for sample in samples[SCAN] if isinstance(sample.value, LaserScan) and sample.value.stamp_s in lasers]
+    known = [(scan, laser.pose) for scan, laser in placed(samples[SCAN], samples[LASER]) if laser is not None and is_level(laser)]
     ends = [np.zeros((0, 2))]
-    for scan in scans[:: max(1, len(scans) // most)]:
-        laser = lasers[scan.stamp_s]
+    for scan, laser in known[:: math.ceil(len(known) / most) or 1]:
         met = (scan.ranges_m > 0.0) & (scan.ranges_m < np.max(scan.ranges_m)) & (scan.ranges_m < NO_RETURN_M)
-        if max(abs(np.sin(laser[4])), abs(np.sin(laser[5]))) < LEVEL:
-            angles = laser[3] + scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
-            ends.append((laser[:2] + scan.ranges_m[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]))[met])
+        angles = laser[3] + scan.angle_min_rad + scan.angle_step_rad * np.arange(len(scan.ranges_m))
+        ends.append((laser[:2] + scan.ranges_m[:, None] * np.column_stack([np.cos(angles), np.sin(angles)]))[met])
     return np.vstack(ends)
 
 
@@ -110,7 +107,7 @@ def verdicts(box: Box) -> list[Lane]:
     """What each link complained of, lowest last; then topics that were too old, and stops by a person. [] of a box without ticks."""
     if not len(box):
         return []
-    _, end = span_s(box)
+    _, end_s = span_s(box)
     lanes = {name: _Lane() for name in (*LINKS, "too old", "held by")}
     for tick in map(box.tick, range(len(box))):
         now = tick.situation
@@ -119,7 +116,7 @@ def verdicts(box: Box) -> list[Lane]:
                 lanes[name].set(tick.t_s, now.links[name].reason if name in now.links else "")
             lanes["too old"].set(tick.t_s, _first_of(sorted(now.stale)))
             lanes["held by"].set(tick.t_s, now.hold[0])
-    return [Lane(name, lane.closed(end)) for name, lane in lanes.items() if name in LINKS or lane.closed(end)]
+    return [Lane(name, lane.closed(end_s)) for name, lane in lanes.items() if name in LINKS or lane.closed(end_s)]
 
 
 def _first_of(names: list[str]) -> str:
@@ -137,20 +134,16 @@ def work(box: Box, most: int) -> list[Lane]:
                 if is_running or (branch.run, i) in lanes:
                     lane = lanes.setdefault((branch.run, i), _Lane())
                     lane.set(tick.t_s, "RUNNING" if is_running else "", STATUS_OF_LETTER[ends[i]] if i in ends else "")
-    found = [Lane(_title(box, place), lane.closed(span_s(box)[1], keep_word=False)) for place, lane in lanes.items()]
+    _, end_s = span_s(box)
+    found = [Lane(box.trees[run].nodes[i].name, lane.closed(end_s, keep_word=False)) for (run, i), lane in lanes.items()]
     longest = sorted(found, key=lambda lane: -sum(span.end_s - span.begin_s for span in lane.spans))[:most]
     return [lane for lane in found if lane in longest]
 
 
 def span_s(box: Box) -> tuple[float, float]:
-    """From when to when: the first and the last tick; of a box without ticks, value of the pose."""
+    """From when to when: the first and the last tick; of a box without ticks, the first and the last pose."""
     times = [time_ns / 1e9 for time_ns in box.times_ns] or [sample.written_s for sample in box.samples([POSE])[POSE]] or [0.0]
     return times[0], times[-1]
-
-
-def _title(box: Box, place: tuple[int, int]) -> str:
-    row = box.trees[place[0]].nodes[place[1]]
-    return row.name if row.name != row.kind else row.kind
 
 
 class _Lane:
