@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import sys
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from pluto_bt.commands.options import Parser
 
 if TYPE_CHECKING:
-    from pluto_bt.gateway.client import Element
+    from pluto_bt.gateway.client import Element, GatewayError
 
-HINT = "start a robot with `pluto run MISSION.xml --realtime`"
+HINT: Final = "\n  start a robot with `pluto run MISSION.xml --realtime`"
 
 
 def gateway_parser(command: str, description: str) -> Parser:
@@ -30,6 +30,11 @@ def call(command: str, address: str, tag: str, **attributes: str) -> Element | N
         with Client(host, port) as client:
             return client.request(tag, **attributes)
     except GatewayError as error:
-        hint = f"\n  {HINT}" if error.code == "no-connection" else ""
-        print(f"pluto {command}: {error.code}: {error}{hint}", file=sys.stderr)
+        tell_refusal(command, error)
         return None
+
+
+def tell_refusal(command: str, error: GatewayError) -> None:
+    """What the gateway refused; or that it is not there, and what would help."""
+    is_there = error.code != "no-connection"
+    print(f"pluto {command}: {error.code + ': ' if is_there else ''}{error}{'' if is_there else HINT}", file=sys.stderr)

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from pluto_bt.commands.gateway_call import HINT, gateway_parser
+from pluto_bt.commands.gateway_call import gateway_parser, tell_refusal
 from pluto_bt.source import Faults
 
 if TYPE_CHECKING:
@@ -50,8 +49,7 @@ def record(to: Path, address: str, topics: list[str], seconds: float | None) -> 
                 client.subscribe(topic, max_rate_hz=0.0 if topics else RATE_HZ)
             count = write(to, mission.get("name", ""), heard(client, seconds))
     except GatewayError as error:
-        hint = f"\n  {HINT}" if error.code == "no-connection" else ""
-        print(f"pluto record: {error.code}: {error}{hint}", file=sys.stderr)
+        tell_refusal("record", error)
         return 1
     print(f"{to}: {count} messages")
     return 0

@@ -26,12 +26,13 @@ def main(argv: list[str]) -> int:
 
         print(dump(load_for_drawing(args.mission, args.tree, args.plugin), args.format, statuses=False))
         return 0
+    from pluto_bt.commands.gateway_call import tell_refusal
     from pluto_bt.gateway.client import GatewayError
 
     try:
         root = _of_run(args)
     except GatewayError as error:
-        print(f"pluto tree: {error}", file=sys.stderr)
+        tell_refusal("tree", error)
         return 1
     if root is None:
         print("pluto tree: no tree was ticked yet", file=sys.stderr)

@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from pluto_bt.commands.options import Parser
-from pluto_bt.source import Faults, PlutoError
+from pluto_bt.source import Faults
 
 COLUMNS = ("layer", "code", "since", "text")
 
@@ -41,17 +41,13 @@ def main(argv: list[str]) -> int:
 
 
 def _live(address: str, at_s: float | None, as_json: bool) -> int:
-    from pluto_bt.gateway.client import Client, GatewayError
-    from pluto_bt.gateway.listen import parse_address
-    from pluto_bt.gateway.why import ask
+    from pluto_bt.commands.gateway_call import call
+    from pluto_bt.gateway.why import causes_of
 
-    try:
-        with Client(*parse_address(address)) as client:
-            is_moving, causes = ask(client, at_s)
-    except PlutoError as error:
-        hint = "\n  start a robot with `pluto run MISSION.xml --realtime`, or give a black box" if not isinstance(error, GatewayError) else ""
-        print(f"pluto why: {error}{hint}", file=sys.stderr)
-        return 1 if isinstance(error, GatewayError) else 2
+    answer = call("why", address, "why", **({} if at_s is None else {"at": str(at_s)}))
+    if answer is None:
+        return 1
+    is_moving, causes = causes_of(answer)
     _print(is_moving, causes, as_json)
     return 0
 

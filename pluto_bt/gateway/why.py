@@ -5,14 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from pluto_bt.gateway.client import Client, Element
-from pluto_bt.gateway.xml_text import Attribute
-
-
-def ask(client: Client, at_s: float | None = None) -> tuple[bool, list[dict[str, Any]]]:
-    """(does it move, the causes). Raises: GatewayError."""
-    at: dict[str, Attribute] = {} if at_s is None else {"at": at_s}
-    return causes_of(client.request("why", **at))
+from pluto_bt.gateway.client import Element
 
 
 def causes_of(reply: Element) -> tuple[bool, list[dict[str, Any]]]:
