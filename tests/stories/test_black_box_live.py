@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import msgspec
 import pytest
@@ -14,7 +15,7 @@ from pluto_bt.cli import main
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.commands.record import record
 from pluto_bt.gateway.client import Client, GatewayError
-from pluto_bt.gateway.why import ask, lines
+from pluto_bt.gateway.why import causes_of, lines
 from pluto_bt.playback import replay_file
 from pluto_bt.record.box import open_box
 from pluto_bt.runner import Runner, make_runner
@@ -22,6 +23,11 @@ from pluto_bt.source import Faults
 from pluto_bt.trees.why_box import why_at
 
 LONG_S = 30.0
+
+
+def ask(client: Client, at_s: float | None = None) -> tuple[bool, list[dict[str, Any]]]:
+    """Does it move, and the causes."""
+    return causes_of(client.request("why", **({} if at_s is None else {"at": at_s})))
 
 
 class Live:
