@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_worlds import cells, random_world, star
 
-from pluto_bt.maps.clearance import ContactWatch, between, path_is_clear
+from pluto_bt.maps.clearance import between, path_is_clear
 from pluto_bt.maps.geometry import transform_points
 from pluto_bt.maps.scene import Scene
-from pluto_bt.maps.world import Actor, OccupancyGrid, Shape, World
+from pluto_bt.maps.world import OccupancyGrid, Shape, World
 
 SEEDS = st.integers(0, 2**32)
 ROBOT = np.array([(0.5, 0.35), (-0.5, 0.35), (-0.5, -0.35), (0.5, -0.35), (0.6, 0.0)])
@@ -140,49 +140,6 @@ def test_an_outline_that_is_none_is_refused(bad):
 
 
 # moving
-
-
-@settings(max_examples=30, deadline=None)
-@given(seed=SEEDS)
-def test_a_watch_that_seldom_looks_misses_nothing(seed):
-    world, rng = random_world(seed, grid=True)
-    scene, twin = Scene(world), Scene(world)
-    watch = ContactWatch(scene, ROBOT)
-    x, y, theta = (*rng.uniform(-9, 9, 2), 0.0)
-    for _ in range(60):
-        theta += rng.normal(0, 0.2)
-        x, y = x + 0.1 * math.cos(theta), y + 0.1 * math.sin(theta)
-        for actor in world.actors:
-            spot = rng.uniform(-9, 9, 2)
-            for each in (scene, twin):
-                each.move_disc(actor.id, *spot)
-        assert watch.touches((x, y, theta)) == (twin.clearance(transform_points((x, y, theta), ROBOT)).distance_m <= 0.0)
-
-
-def test_a_watch_looks_seldom():
-    scene = Scene(World("w", shapes=(polygon("p", at(SQUARE, 12.0, 0.0)),)))
-    looks = []
-    original = scene.clearance
-    scene.clearance = lambda outline: looks.append(1) or original(outline)  # type: ignore[method-assign]
-    watch = ContactWatch(scene, ROBOT)
-    touched = next(i for i in range(2000) if watch.touches((0.01 * i, 0.0, 0.0)))
-    assert touched == 1040
-    assert len(looks) < 30
-
-
-def test_a_watch_notices_what_appears():
-    box, ann = Shape("box", "polygon", at(SQUARE, 20.0, 0.0), absent=True), Actor("ann", 0.3, 1.0, True, np.array([[9.0, 0.0]]))
-    scene = Scene(World("w", shapes=(box,), actors=(ann,)))
-    watch = ContactWatch(scene, ROBOT)
-    assert not watch.touches((0.0, 0.0, 0.0))
-    scene.place("box", 1.0, 0.0)
-    assert watch.touches((0.0, 0.0, 0.0))
-    scene.remove("box")
-    assert not watch.touches((0.0, 0.0, 0.0))
-    scene.move_disc("ann", 0.8, 0.0)
-    assert watch.touches((0.0, 0.0, 0.0))
-    scene.show_disc("ann", False)
-    assert not watch.touches((0.0, 0.0, 0.0))
 
 
 def gap_of(width_m):

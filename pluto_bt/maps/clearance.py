@@ -1,6 +1,6 @@
-"""Motion of the robot's outline through a scene: does it touch, is a way free.
+"""Motion of the robot's outline through a scene: is a way free.
 
-The bound that both use: when the robot moves from pose a to pose b, no point of the outline moves further than
+The bound that is used: when the robot moves from pose a to pose b, no point of the outline moves further than
 `hypot(dx, dy) + radius * |dtheta|`, where radius is the furthest corner from the robot's origin. As long as the sum of that stays below
 the last exact clearance there is no contact, and nothing needs to be looked at.
 """
@@ -16,36 +16,6 @@ from numpy.typing import ArrayLike
 
 from pluto_bt.maps.geometry import Pose, transform_points, wrap_angle
 from pluto_bt.maps.scene import Nearest, Scene
-
-
-class ContactWatch:
-    """Tells at each small step of a robot whether its outline touches anything; most steps cost no look at the scene.
-
-    Exact at the poses it is asked about, whatever the steps between them; actors that walk and things that come and go are reckoned with.
-    """
-
-    def __init__(self, scene: Scene, outline_robot_m: ArrayLike) -> None:
-        self._scene = scene
-        self._outline = np.array(outline_robot_m, dtype=np.float64)
-        self._radius_m = outline_radius_m(self._outline)
-        self._pose: Pose = (0.0, 0.0, 0.0)
-        self._spare_m = 0.0  # no contact before the outline and the actors have moved this much together
-        self._walked_m = 0.0
-        self._changes = -1
-
-    def touches(self, pose_map_robot: Pose) -> bool:
-        """Whether the outline shares a point with anything solid at this pose."""
-        spare_m = self._spare_m - motion_bound_m(self._pose, pose_map_robot, self._radius_m) - (self._scene.moved_m - self._walked_m)
-        if spare_m > 0.0 and self._changes == self._scene.changes:
-            return False
-        return self.clearance(pose_map_robot).distance_m <= 0.0
-
-    def clearance(self, pose_map_robot: Pose) -> Nearest:
-        """The exact clearance at this pose; later steps are reckoned from here."""
-        nearest = self._scene.clearance(transform_points(pose_map_robot, self._outline))
-        self._pose, self._spare_m = pose_map_robot, nearest.distance_m
-        self._walked_m, self._changes = self._scene.moved_m, self._scene.changes
-        return nearest
 
 
 class Blocked(NamedTuple):

@@ -52,8 +52,6 @@ class Scene:
         rows = [(*actor.waypoints[0], -1.0 if actor.absent else actor.radius_m, actor.height_m, first + i) for i, actor in enumerate(world.actors)]
         self._moving = table_of(rows, 5)
         self._free, self._frame = grid_tables(world.grid)
-        self._changes = 0
-        self._moved_m = 0.0
         self._angles = np.zeros(0)
         self._fan, self._ranges = fan_of(self._angles), np.zeros(0)
         self._cone_table = np.zeros((6, 0))
@@ -96,7 +94,6 @@ class Scene:
     def move_disc(self, id: str, x_m: float, y_m: float) -> None:
         """Move an actor's centre."""
         row = self._discs[self._actors[id][0]]
-        self._moved_m += math.hypot(x_m - row[DISC_X], y_m - row[DISC_Y])
         row[DISC_X] = x_m
         row[DISC_Y] = y_m
 
@@ -104,19 +101,8 @@ class Scene:
         """Make an actor present, or take it away."""
         i, actor = self._actors[id]
         self._discs[i, DISC_RADIUS] = actor.radius_m if present else -1.0
-        self._changes += 1
 
     # what it answers
-
-    @property
-    def changes(self) -> int:
-        """How often something came, went or was put elsewhere. Actors that walk do not count."""
-        return self._changes
-
-    @property
-    def moved_m(self) -> float:
-        """The way that all actors together have walked: no gap to anything has shrunk by more since it was less by that."""
-        return self._moved_m
 
     def is_present(self, id: str) -> bool:
         """Whether a shape or actor is there."""
@@ -209,7 +195,6 @@ class Scene:
         self._segments, self._blocks, self._rings = solids.segments, solids.blocks, solids.rings
         self._discs = np.vstack((self._moving, solids.discs))
         self._moving = self._discs[: len(self._actors)]
-        self._changes += 1
 
     def _in_order(self) -> list[tuple[str, Points]]:
         return [(id, self._stands[id]) for id in self._shapes if id in self._stands]
