@@ -17,7 +17,7 @@ OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.BUMPER_STALE: ("bumpers", "ATRV2/Bumper"),
     reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
     reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
-    reasons.WALKER: ("laser", "sick/scan"), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
+    reasons.WALKER: ("people", ""), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
     WHEEL_SLIP: ("wheels", ""),
     "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),

@@ -10,6 +10,7 @@ import pytest
 
 from pluto_bt.cli import main
 from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.gateway.why import lines
 from pluto_bt.record.box import Box, open_box
 from pluto_bt.runner import make_runner
 from pluto_bt.runtime.latch import ESTOP
@@ -116,6 +117,9 @@ def test_a_wall_across_the_way_is_seen_by_the_laser(tmp_path: Path) -> None:
     causes = acted(tmp_path, lambda system: None, 3.0, 20.0, leaf='<HoldHeading heading_deg="0" speed_mps="0.5" duration_s="60"/>')
     assert causes[0].layer == "sensor" and causes[0].code in ("laser", "sonar"), causes
     assert causes[-1].layer == "mission" and causes[-2].layer == "node"
+    told = "\n".join(lines(False, [cause._asdict() for cause in causes]))
+    sentence = causes[0].text.partition(": ")[2]
+    assert told.count(sentence) == 1 and told.endswith("mission m running") and ": the same\n" in told, "what one link hands to the next is told once"
 
 
 def test_the_command_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
