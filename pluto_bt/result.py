@@ -13,7 +13,32 @@ INTERRUPTED = "interrupted"
 
 
 class RunResult(msgspec.Struct, kw_only=True):
-    """The outcome of one run. Poses are [x m, y m, theta rad] in the map frame."""
+    """The outcome of one run. Poses are [x m, y m, theta rad] in the map frame.
+
+    Attributes:
+        result: SUCCESS, FAILURE, STOPPED or REFUSED.
+        reason: why, in one word; empty on SUCCESS.
+        sim_time_s: how long the run lasted by its own clock.
+        wall_time_s: from the first to the last step.
+        ticks: of the mission's tree.
+        distance_m: the way that the robot really drove.
+        collisions: contacts of the outline with a speed of its own towards them of more than 0.05 m/s.
+        hit_by: the other contacts: who walked into the robot.
+        min_clearance_m: the least distance of the outline from anything solid; null if there is nothing.
+        final_pose: where the robot really stood at the end.
+        estimated_pose: where it believed to stand.
+        trace_sha256: of the trace (`--trace`); equal for equal runs.
+        leaves: path of each leaf -> its last status.
+        blackboard: the mission's root entries at the end.
+        faults: of the files; of a run that was not refused, its warnings.
+        contracts: how each contract of the mission has stood.
+        contacts: each collision and hit: when, where, with what.
+        text: the reason in a sentence.
+        seed: of all randomness.
+        mission: its file.
+        world: its name.
+        platform: the robot's name.
+    """
 
     result: str
     reason: str = ""

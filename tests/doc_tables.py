@@ -14,6 +14,8 @@ from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
 from pluto_bt.behaviours.reasons import REASONS, WAITING
 from pluto_bt.blackboard import TOPICS
 from pluto_bt.blackboard.codes import STATUS_ENUMS, code_name
+from pluto_bt.cli import COMMANDS
+from pluto_bt.commands.run import run_parser
 from pluto_bt.gateway.parse import _FROM_CONTENT
 from pluto_bt.gateway.proxies import PROXIES, Proxy
 from pluto_bt.gateway.requests import ELEMENTS
@@ -21,7 +23,7 @@ from pluto_bt.gateway.shell.table import GENERAL, MODULE_ROWS
 from pluto_bt.maps import fault_table
 from pluto_bt.modules.robot_file import SHIPPED, RobotFile, load_robot_file
 from pluto_bt.modules.topic_globals import fields_of
-from pluto_bt.result import EXIT_CODES, INTERRUPTED, SUPERVISION
+from pluto_bt.result import EXIT_CODES, INTERRUPTED, SUPERVISION, RunResult
 from pluto_bt.runtime.parameters import Parameter, describe
 from pluto_bt.skills.reasons import CHAIN_REASONS
 from pluto_bt.system import MODULES
@@ -113,6 +115,30 @@ def _folded(names: Iterable[str]) -> list[str]:
 
 def _seconds(value: float, none: str) -> str:
     return f"{value:g} s" if value else none
+
+
+# ---------------------------------------------------------------------- the command line
+
+
+def commands() -> str:
+    """Every command of `pluto`."""
+    return table(("command", "what it does"), ((f"`pluto {name}`", text) for name, text in COMMANDS.items()))
+
+
+def run_options() -> str:
+    """The options of `pluto run`, as its parser has them."""
+    rows = []
+    for action in run_parser()._actions:
+        if action.option_strings and action.dest != "help":
+            value = action.metavar or ("|".join(action.choices) if action.choices else "")
+            rows.append((f"`{action.option_strings[0]}{f' {value}' if value else ''}`", re.sub(r"(<[^>]+>)", r"`\1`", action.help or "")))
+    return table(("option", "meaning"), rows)
+
+
+def result_fields() -> str:
+    """The object of `--json`. Raises KeyError for a field that its class does not describe."""
+    described = dict(re.findall(r"^        (\w+): (.+)\.$", RunResult.__doc__ or "", re.MULTILINE))
+    return table(("field", "meaning"), ((f"`{name}`", described[name].replace("->", "→")) for name in RunResult.__struct_fields__))
 
 
 # ---------------------------------------------------------------------- worlds, platforms
@@ -278,6 +304,9 @@ TABLES: dict[str, Callable[[], str]] = {
     "nav2-missing": missing_nodes,
     "motion-ports": motion_ports,
     "topics": topics,
+    "commands": commands,
+    "run-options": run_options,
+    "result-fields": result_fields,
     "fault-cases": fault_cases,
     "fault-units": fault_units,
     "parameters": parameters,

@@ -20,7 +20,7 @@ def main(argv: list[str]) -> int:
     """Run one mission; returns the exit code of DESIGN.md, section 4."""
     wants_json = "--json" in argv  # known even if the command line cannot be understood
     try:
-        result = _run(_parser().parse_args(argv))
+        result = _run(run_parser().parse_args(argv))
     except InputError as error:
         print(error, file=sys.stderr)
         result = RunResult(result="REFUSED", reason="bad-input", faults=[fault.as_json() for fault in error.faults])
@@ -29,7 +29,8 @@ def main(argv: list[str]) -> int:
     return result.exit_code
 
 
-def _parser() -> Parser:
+def run_parser() -> Parser:
+    """All options of a run."""
     from pluto_bt.commands.doors import add_door_options
     from pluto_bt.commands.inputs import add_input_options
 
