@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from typing import Protocol
@@ -33,7 +34,7 @@ class Writes:
             try:
                 n_bytes = write(fd, line)
             except OSError as error:
-                n_bytes = -(error.errno or 0)
+                n_bytes = -(error.errno or errno.EIO)
             if n_bytes != len(line):
                 sent[i] = n_bytes
         return sent
