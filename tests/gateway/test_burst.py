@@ -5,7 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import socket
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -16,24 +16,9 @@ from pluto_bt.gateway.burst import Burst, Ints, Writes, fastest
 from pluto_bt.gateway.outlets import Outlet, Outlets
 from pluto_bt.gateway.uring import ENTRIES, Uring
 
+from .conftest import uring
+
 LINE = b'<value topic="operator/word" seq="1"/>\n'
-
-
-def uring() -> Uring:
-    """The kernel's ring, or the end of the test."""
-    try:
-        return Uring()
-    except OSError as error:
-        pytest.skip(f"this kernel, or what this process may do in it, has no io_uring: {error}")
-
-
-@pytest.fixture(params=[Writes, uring], ids=["writes", "uring"])
-def burst(request: pytest.FixtureRequest) -> Iterator[Burst]:
-    make: Callable[[], Burst] = request.param
-    made = make()
-    yield made
-    if isinstance(made, Uring):
-        made.close()
 
 
 class Ends:

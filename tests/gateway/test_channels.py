@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import itertools
 import re
 
 import numpy as np
@@ -22,15 +24,17 @@ TOPIC = "operator/word"
 
 
 class Sockets:
-    """A `Burst` whose sockets take everything."""
+    """A `Burst` whose sockets take everything, or nothing if they are `full`."""
 
     def __init__(self) -> None:
         self.lines: dict[int, list[bytes]] = {}
+        self.full: set[int] = set()
 
     def send(self, fds: Ints, line: bytes) -> Ints:
         for fd in fds.tolist():
-            self.lines.setdefault(fd, []).append(line)
-        return np.full(len(fds), len(line), np.int32)
+            if fd not in self.full:
+                self.lines.setdefault(fd, []).append(line)
+        return np.array([-errno.EAGAIN if fd in self.full else len(line) for fd in fds.tolist()], np.int32)
 
 
 class Street:
@@ -115,7 +119,12 @@ class Client:
         return self.reads and not self.subscriptions.due
 
     def send_rest(self, rest: bytes) -> None:
-        raise AssertionError("these sockets take everything")
+        raise AssertionError("these sockets take all or nothing")
+
+    def reads_or_not(self, reads: bool) -> None:
+        """From now on."""
+        self.reads = reads
+        self._street.sockets.full = self._street.sockets.full - {self._fd} if reads else self._street.sockets.full | {self._fd}
 
     def flush(self, now_s: float) -> None:
         """Hear what came past the queue, then what waited there."""
@@ -133,7 +142,8 @@ def test_who_is_served_past_the_queues_hears_what_the_queues_would_have_given_hi
     street = Street()
     fast, slow = Client(street, 1, rate_hz, has_outlet=True), Client(street, 2, rate_hz, has_outlet=False)
     for i, (n_values, reads, is_late) in enumerate(steps):
-        fast.reads = slow.reads = reads
+        fast.reads_or_not(reads)
+        slow.reads_or_not(reads)
         now_s = 0.02 * i
         street.seq += n_values - 1  # the executive tells the newest alone
         street.seq += not is_late
@@ -146,7 +156,7 @@ def test_who_is_served_past_the_queues_hears_what_the_queues_would_have_given_hi
     seqs = [seq for seq, _ in fast.heard]
     assert seqs == sorted(set(seqs))
     if rate_hz == 0.0:
-        lost = [after - before - 1 for before, after in zip(seqs, seqs[1:], strict=False)]
+        lost = [after - before - 1 for before, after in itertools.pairwise(seqs)]
         assert lost == [dropped for _, dropped in fast.heard[1:]], "he is told of each value that he did not get"
 
 
