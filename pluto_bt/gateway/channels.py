@@ -1,8 +1,8 @@
 """The values of all topics on their way to all clients: who is served with the next one, and who later.
 
-Clients that named a rate are spread over the lanes of their period, which are due one after the other; a lane that is due is served with the
-next value that comes, so values are young when they are sent. If none comes for `GRACE_S`, it gets what there is. Who wants each value is in
-a lane that is always due. Lanes are all that moves: serving a client costs little more than the write.
+Clients that named a rate fill the lanes of their period one after the other. The lanes are due at different times, and a lane that is due is
+served with the next value that comes, so values are young when they are sent. If none comes for `GRACE_S`, it gets what there is. Who wants
+each value is in a lane that is always due. Few lanes and full ones: waking up for a burst costs both sides as much as ten sends.
 """
 
 from __future__ import annotations
@@ -10,7 +10,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 
+from pluto_bt.gateway.lanes import FLOWS, Lane
 from pluto_bt.gateway.newest import Newest
+from pluto_bt.gateway.outlets import Outlets
 from pluto_bt.gateway.subscriptions import Flow
 
 GRACE_S = 0.05
@@ -18,36 +20,11 @@ EARLY_S = 0.005  # a value that comes so little too early is taken: the next one
 LANE_S, MOST_LANES = 0.02, 16
 
 
-class Lane:
-    """Flows of one topic and one period that are served together."""
-
-    __slots__ = ("flows", "next_s", "period_s", "seq")
-
-    def __init__(self, period_s: float, next_s: float) -> None:
-        self.period_s, self.next_s = period_s, next_s
-        self.flows: dict[Flow, None] = {}
-        self.seq = 0
-
-    def serve(self, newest: Newest, now_s: float) -> Iterator[Flow]:
-        """Send the value to all who can take it at once; yields the others, for whom it waits now."""
-        self.seq = seq = newest.seq
-        if self.period_s:
-            late_s = now_s - self.next_s
-            self.next_s = self.next_s + self.period_s if late_s < self.period_s else now_s + self.period_s
-        line = newest.line(now_s) if self.flows else b""
-        has_rate = self.period_s > 0.0
-        for flow in self.flows:
-            seen, sink = flow.seq, flow.sink
-            if sink is not None and seen and seen != seq and (has_rate or seen == seq - 1) and sink(line):
-                flow.seq = seq
-            elif flow.take(newest):
-                yield flow
-
-
 class Channels:
-    """All topics, the newest value of each, and its lanes."""
+    """All topics, the newest value of each, and its lanes; `outlets` are those of the flows."""
 
-    def __init__(self, topics: Iterable[str]) -> None:
+    def __init__(self, topics: Iterable[str], outlets: Outlets) -> None:
+        self._outlets = outlets
         self._lanes: dict[str, dict[tuple[float, int], Lane]] = {topic: {} for topic in topics}
         self._newest: dict[str, Newest] = {}
 
@@ -63,22 +40,30 @@ class Channels:
 
     def join(self, topic: str, flow: Flow, now_s: float) -> bool:
         """A new flow; True if it has been given the value that is there."""
-        lanes = _lanes_of(flow)
-        key = (flow.period_s, flow.client % lanes)
-        lane = self._lanes[topic].get(key)
-        if lane is None:
-            lane = self._lanes[topic][key] = Lane(flow.period_s, now_s + flow.period_s * key[1] / lanes if flow.period_s else -math.inf)
-        lane.flows[flow] = None
+        self._lane_for(flow, self._lanes[topic], now_s).join(flow)
         newest = self._newest.get(topic)
         return newest is not None and flow.take(newest)
 
+    def _lane_for(self, flow: Flow, lanes: dict[tuple[float, int], Lane], now_s: float) -> Lane:
+        """The first lane of its period that has room, else a new one, else the one with the fewest."""
+        period_s = flow.period_s
+        n_lanes = _most(period_s)
+        for k in range(n_lanes):
+            lane = lanes.get((period_s, k))
+            if lane is None:
+                lane = lanes[period_s, k] = Lane(self._outlets, period_s, now_s + period_s * _spread(k) if period_s else -math.inf)
+            if len(lane) < FLOWS:
+                return lane
+        return min((lanes[period_s, k] for k in range(n_lanes)), key=len)
+
     def leave(self, topic: str, flow: Flow) -> None:
         """Nobody wants this flow any more; an empty lane goes with it."""
-        lanes, key = self._lanes[topic], (flow.period_s, flow.client % _lanes_of(flow))
-        if key in lanes:
-            lanes[key].flows.pop(flow, None)
-            if not lanes[key].flows:
-                del lanes[key]
+        lanes = self._lanes[topic]
+        for key in [(flow.period_s, k) for k in range(_most(flow.period_s))]:
+            if key in lanes:
+                lanes[key].leave(flow)
+                if not lanes[key]:
+                    del lanes[key]
 
     def offer(self, newest: Newest, now_s: float) -> Iterator[Flow]:
         """A new value: serve the lanes that are due; yields the flows for whom it waits."""
@@ -96,6 +81,14 @@ class Channels:
                         yield from lane.serve(newest, now_s)
 
 
-def _lanes_of(flow: Flow) -> int:
-    """How many lanes the flows of its period are spread over."""
-    return min(MOST_LANES, max(1, round(flow.period_s / LANE_S)))
+def _most(period_s: float) -> int:
+    """How many lanes a period may have."""
+    return min(MOST_LANES, max(1, round(period_s / LANE_S)))
+
+
+def _spread(k: int) -> float:
+    """0, 1/2, 1/4, 3/4, 1/8, …: where in a period lane `k` is due, far from all before it, whatever comes later (van der Corput)."""
+    share, part = 0.0, 0.5
+    while k:
+        share, part, k = share + part * (k & 1), 0.5 * part, k >> 1
+    return share

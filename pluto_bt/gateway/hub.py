@@ -8,6 +8,7 @@ from pluto_bt.gateway.channels import Channels
 from pluto_bt.gateway.describe import describe
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.newest import Newest
+from pluto_bt.gateway.outlets import Outlets
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.replies import Description
 from pluto_bt.gateway.requests import AnyRequest, Describe
@@ -27,9 +28,10 @@ class Hub:
         welcome: what the executive said first.
         send: takes a frame for the executive; never blocks.
         now_s: our own clock (any zero) at the welcome.
+        outlets: where the sockets of clients are, if they have any.
     """
 
-    def __init__(self, welcome: Welcome, send: Callable[[Up], None], now_s: float) -> None:
+    def __init__(self, welcome: Welcome, send: Callable[[Up], None], now_s: float, outlets: Outlets | None = None) -> None:
         self.limits: Limits = welcome.limits
         self.robot = welcome.robot
         self.access = welcome.access
@@ -41,7 +43,8 @@ class Hub:
         self._evicted: list[int] = []  # who is still to be told
         self._asked: set[int] = set()  # clients that the executive has heard of
         self._next_client = welcome.first_client
-        self._channels = Channels(welcome.topics)
+        self.outlets = outlets or Outlets()
+        self._channels = Channels(welcome.topics, self.outlets)
         self._interest: dict[str, float] = {}  # topics that were asked for by `get`, and until when they are watched for it
         self._watched: tuple[str, ...] = ()
         self._run_minus_ours_s = welcome.now_s - now_s
@@ -122,7 +125,7 @@ class Hub:
     def _hand_out(self, flows: Iterable[Flow], touched: dict[int, None]) -> None:
         sessions = self._sessions
         for flow in flows:
-            sessions[flow.client].subscriptions.due[flow] = None
+            sessions[flow.client].subscriptions.put(flow)
             touched[flow.client] = None
 
     # for sessions ------------------------------------------------------------------------------------------------
@@ -159,7 +162,7 @@ class Hub:
         subscriptions = session.subscriptions
         for topic, flow in subscriptions.flows.items():
             if old.get(topic) is not flow and self._channels.join(topic, flow, now_s):
-                subscriptions.due[flow] = None
+                subscriptions.put(flow)
 
     def _leave(self, old: dict[str, Flow], session: Session) -> None:
         for topic, flow in old.items():

@@ -8,7 +8,9 @@ import socket
 import sys
 from typing import cast
 
+from pluto_bt.gateway.burst import fastest
 from pluto_bt.gateway.hub import Hub
+from pluto_bt.gateway.outlets import Outlets
 from pluto_bt.gateway.server import Server
 from pluto_bt.gateway.wire import Answer, Batch, Farewell, Frames, Up, Welcome, pack
 
@@ -44,7 +46,7 @@ class ExecutiveProtocol(asyncio.Protocol):
                 self._loop.call_later(FAREWELL_S, self._done.set)
 
     def _open(self, welcome: Welcome) -> None:
-        server = self._server = Server(Hub(welcome, self._send, self._loop.time()))
+        server = self._server = Server(Hub(welcome, self._send, self._loop.time(), Outlets(fastest())))
         server.begin()
         if self._listener is not None:
             self._starting.append(self._loop.create_task(server.listen(self._listener)))

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import socket
 import ssl
 from collections import deque
-from collections.abc import Iterable, Sized
+from collections.abc import Iterable
 from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
 from pluto_bt.gateway.listen import BACKLOG
+from pluto_bt.gateway.outlets import Outlet
 from pluto_bt.gateway.session import Session
 
 SLICE_BYTES = 4096
@@ -33,8 +33,7 @@ class ClientProtocol(asyncio.Protocol):
         self._at_eof = False
         self._is_ending = False
         self._discarded = 0  # bytes since the end began
-        self._fd = -1
-        self._before: tuple[Sized, Sized] = ((), ())  # what stands before a value that is sent at once
+        self._outlet: Outlet | None = None
 
     # asyncio's calls ---------------------------------------------------------------------------------------------
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -51,9 +50,7 @@ class ClientProtocol(asyncio.Protocol):
         self._server.clients[self._session.client] = self
         connection = transport.get_extra_info("socket")
         if connection is not None and transport.get_extra_info("sslcontext") is None:
-            self._fd = connection.fileno()
-            self._before = (self._session.queue, self._session.subscriptions.due)
-            self._session.subscriptions.sink = self.send_now
+            self._outlet = self._session.subscriptions.outlet = hub.outlets.add(connection.fileno(), self)
         self.flush()
 
     def data_received(self, data: bytes) -> None:
@@ -89,7 +86,9 @@ class ClientProtocol(asyncio.Protocol):
         self.flush()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Gone."""
+        """Gone; its socket is closed after this, and the number may be another's then."""
+        if self._outlet is not None:
+            self._outlet.close()
         self._unread.clear()
         self._server.clients.pop(self._session.client, None)
         self._server.hub.close(self._session)
@@ -130,26 +129,26 @@ class ClientProtocol(asyncio.Protocol):
             session.tick(self._loop.time(), self._transport.get_write_buffer_size())
         out = session.to_send(self._loop.time(), 0 if self._is_full else self._server.hub.limits.write_mark_bytes)
         if out:
+            self._hold()
             self._transport.write(out)
         if session.closing:
             self._end()
         elif self._at_eof:
             self._end_if_served()
 
-    def send_now(self, line: bytes) -> bool:
-        """Write a line to the socket itself, where nothing waits before it: that costs half of what a transport's write does."""
-        transport, (replies, values) = self._transport, self._before
-        if replies or values or self._is_ending or transport.get_write_buffer_size() or transport.is_closing():
-            return False
-        try:
-            sent = os.write(self._fd, line)
-        except BlockingIOError:
-            return False
-        except OSError:  # gone; the transport will hear of it
-            return True
-        if sent < len(line):
-            transport.write(line[sent:])
-        return True
+    def is_clear(self) -> bool:
+        """See `Owner`."""
+        session, transport = self._session, self._transport
+        return not (self._is_ending or session.queue or session.subscriptions.due or transport.get_write_buffer_size() or transport.is_closing())
+
+    def send_rest(self, rest: bytes) -> None:
+        """See `Owner`."""
+        self._transport.write(rest)
+
+    def _hold(self) -> None:
+        """Lines do not go past the transport for now."""
+        if self._outlet is not None:
+            self._outlet.hold()
 
     def tick(self, now_s: float) -> None:
         """Look after the client's manners."""
@@ -161,12 +160,14 @@ class ClientProtocol(asyncio.Protocol):
     def _end_if_served(self) -> None:
         """A client that has said all is let go when nothing of his is unread or unanswered."""
         if self._at_eof and not self._unread and not self._session.is_waiting and not self._transport.is_closing():
+            self._hold()
             self._transport.close()
             self._loop.call_later(self._server.hub.limits.idle_s, self._transport.abort)  # one that does not read what waits must go, too
 
     def _end(self) -> None:
         """Half-close, go on discarding input, then close: a reset would swallow the error."""
         self._is_ending = True
+        self._hold()
         linger_s = self._server.hub.limits.linger_s
         if self._at_eof:
             self._transport.close()

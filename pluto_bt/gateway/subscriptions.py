@@ -2,33 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 from pluto_bt.gateway.newest import Newest
+from pluto_bt.gateway.outlets import Outlet
 from pluto_bt.gateway.requests import Subscribe
 
 ALIASES = {"mission": "mission/state"}
 """Short names that the protocol promises."""
-Sink = Callable[[bytes], bool]
-"""Sends a line past all queues, if nothing waits there; False if it cannot be sent at once."""
 
 
 class Flow:
     """One topic on its way to one client.
 
     Attributes:
-        sink: sends at once; None where that cannot be, or the line is not the same for all clients.
-        seq: of the last value taken or sent.
+        outlet: where lines can be sent past all queues; None where that cannot be, or the line is not the same for all clients.
+        seq: of the last value taken; a flow that is served along with its lane has the lane's.
         waiting: a value that is not sent yet, because something stands before it.
     """
 
-    __slots__ = ("client", "dropped", "last_body", "period_s", "seq", "shown", "sink", "waiting", "wish")
+    __slots__ = ("client", "dropped", "last_body", "outlet", "period_s", "seq", "shown", "waiting", "wish")
 
-    def __init__(self, client: int, topic: str, wish: Subscribe, sink: Sink | None) -> None:
+    def __init__(self, client: int, topic: str, wish: Subscribe, outlet: Outlet | None) -> None:
         self.client = client
         self.wish = wish
         self.shown = wish.topic if wish.topic in ALIASES else ""
-        self.sink = None if self.shown or wish.id or wish.on_change else sink
+        self.outlet = None if self.shown or wish.id or wish.on_change else outlet
         self.period_s = 1.0 / wish.max_rate_hz if wish.max_rate_hz > 0.0 else 0.0
         self.seq = 0
         self.waiting: Newest | None = None
@@ -64,7 +63,7 @@ class Subscriptions:
 
     def __init__(self, client: int) -> None:
         self._client = client
-        self.sink: Sink | None = None  # the server's; set before the first wish
+        self.outlet: Outlet | None = None  # the server's; set before the first wish
         self._wishes: dict[str, Subscribe] = {}
         self.flows: dict[str, Flow] = {}  # by topic
         self.due: dict[Flow, None] = {}  # flows with a value that waits to be sent, in that order
@@ -86,6 +85,12 @@ class Subscriptions:
         self._wishes.clear()
         self._join(())
 
+    def put(self, flow: Flow) -> None:
+        """A value waits for the next `take`."""
+        self.due[flow] = None
+        if self.outlet is not None:
+            self.outlet.hold()
+
     def take(self, now_s: float, room_bytes: int) -> bytes:
         """Lines that are due, as long as there is room; the others wait, and may be replaced by newer ones."""
         due = self.due
@@ -105,7 +110,7 @@ class Subscriptions:
         for topic in topics:
             wish, old = self._wish(topic), self.flows.get(topic)
             if wish is not None:
-                flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish, self.sink)
+                flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish, self.outlet)
         for topic, flow in self.flows.items():
             if flows.get(topic) is not flow:
                 self.due.pop(flow, None)

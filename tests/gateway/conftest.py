@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
 from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.burst import Burst, Writes
 from pluto_bt.gateway.client import Backoff, Client
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.uring import Uring
 from pluto_bt.runtime.clock import MonotonicClock
 
 from .robot import FakeRobot
@@ -89,3 +91,20 @@ def unpumped() -> Iterator[Running]:
 def running(unpumped: Running) -> Running:
     unpumped.pump()
     return unpumped
+
+
+def uring() -> Uring:
+    """The kernel's ring, or the end of the test."""
+    try:
+        return Uring()
+    except OSError as error:
+        pytest.skip(f"this kernel, or what this process may do in it, has no io_uring: {error}")
+
+
+@pytest.fixture(params=[Writes, uring], ids=["writes", "uring"])
+def burst(request: pytest.FixtureRequest) -> Iterator[Burst]:
+    make: Callable[[], Burst] = request.param
+    made = make()
+    yield made
+    if isinstance(made, Uring):
+        made.close()
