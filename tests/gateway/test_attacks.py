@@ -18,6 +18,7 @@ import pytest
 from pluto_bt.bench.attacker import CROWDS, STREAMS, begin
 from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.client import GatewayError
+from pluto_bt.gateway.replies import Item
 from pluto_bt.runtime.clock import wait, wall_ns
 
 from .conftest import Running
@@ -39,10 +40,10 @@ STREAM_TAKES = 40 * 1024 * 1024
 
 
 class Target(Running):
-    """A gateway with a scan that changes, and a polite client."""
+    """A gateway with a scan that changes, as much to describe as a robot has, and a polite client."""
 
     def __init__(self) -> None:
-        super().__init__()
+        super().__init__(items=[Item({"kind": "node", "name": f"node {number}"}, (), "what it does " * 20) for number in range(500)])
         scan = m.read_only([12.34] * 361)
         self.on_step = lambda: self.robot.write("sick/scan", m.LaserScan(self.robot.time_s, 0.0, 0.01, scan))
         self.pump()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -127,6 +129,21 @@ def test_limits_let_pass_what_is_just_within_them() -> None:
     ):
         seen, error = run([stream, b"<ping/>"])
         assert error is None and len(seen) == 2, (error and error.text, stream[:20])
+
+
+NAMING = ["<n{name}><!-- --></n{name}>", '<ping n{name}="&amp;"/>', '<ping xmlns:n="{name}"/>', "<ping><n{name}/><!-- --></ping>"]
+
+
+@pytest.mark.parametrize("form", NAMING)
+def test_new_names_leave_nothing_behind(form: str) -> None:
+    before_mb = rss_mb()
+    for number in range(500):
+        run([form.format(name=f"{number}." + "x" * 20_000).encode()])  # 20 MB of names
+    assert rss_mb() - before_mb < 5.0
+
+
+def rss_mb() -> float:
+    return int(Path("/proc/self/status").read_text(encoding="ascii").split("VmRSS:")[1].split()[0]) / 1024
 
 
 def test_strangers_are_told_what_this_port_is() -> None:
