@@ -142,6 +142,8 @@ class Framer:
         if cutter.safe > self._parsed:
             self._parse(bytes(self._raw[self._parsed : cutter.safe]))
             self._parsed = cutter.safe
+            if cutter.is_end and not self._reading.is_complete:
+                raise self._error("bad-encoding", "expected UTF-8, found half a character at the message's end")
         return at + len(piece) - behind
 
     def _parse(self, piece: bytes) -> None:

@@ -76,6 +76,8 @@ ATTACKS = [
     (b"<a>\xff</a>", "bad-encoding", 1, 4),
     (b"<a b='\xc3('/>", "bad-encoding", 1, 7),
     (b"<a>\xed\xa0\x80</a>", "bad-encoding", 1, 4),
+    (b"<\xf3/>", "bad-encoding", 1, 1),
+    (b"<a></\xe2\x82>", "bad-encoding", 1, 6),
     (b"<a>\x00</a>", "not-well-formed", 1, 4),
     (b"<a>&#0;</a>", "not-well-formed", 1, 4),
     (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n", "not-well-formed", 1, 1),
