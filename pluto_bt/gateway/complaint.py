@@ -17,14 +17,12 @@ def complaint(number: int, raw: bytes | bytearray, at: int, open_tags: Sequence[
     code, word = _CODES.get(number, "not-well-formed"), _word(raw, at)
     if number == _MISMATCH and open_tags:
         return code, f"expected </{open_tags[-1][:_SHOWN_BYTES]}>, found </{word}>"
-    text = expat.ErrorString(number)
-    if number == _INVALID_TOKEN:
+    if number == _INVALID_TOKEN:  # one character is shown: what follows it may not have come yet
         if not _is_utf8(raw, at):
             return "bad-encoding", f"expected UTF-8, found the byte 0x{raw[at]:02x}"
         code = "restricted-xml" if raw[max(0, at - 2) : at] == b"<!" else code
-        text += f", found {chr(raw[at])!r}" if not word and at < len(raw) else ""
-    if word:
-        text += f", found {word!r}"
+        word = raw[at : at + 4].decode("utf-8", "ignore")[:1]
+    text = f"{expat.ErrorString(number)}, found {word!r}"
     if code == "restricted-xml":
         text += "; no document type, entity (but the five predefined) or processing instruction may stand in a message"
     return code, text
