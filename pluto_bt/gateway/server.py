@@ -48,7 +48,9 @@ class ClientProtocol(asyncio.Protocol):
         keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
         self._session = hub.open(self._loop.time())
         if len(self._server.clients) >= 2 * hub.limits.clients and not self._server.let_one_go():
-            self._transport.abort()  # so many that not even the error can be said to all
+            self._session.fail("too-many-connections", "too many others are being turned away just now")
+            self._transport.write(self._session.to_send(self._loop.time(), 0))
+            self._transport.close()  # at once, so that the error may be lost on the way
             return
         self._session.peer = ":".join(map(str, (self._transport.get_extra_info("peername") or ())[:2]))
         self._session.known_as(hub.access.by_certificate(common_name(self._transport)))
@@ -131,9 +133,7 @@ class ClientProtocol(asyncio.Protocol):
                 return
         self._taking = None
         self.flush()
-        if self._transport.is_closing():
-            return
-        if self._discarded <= self._server.hub.limits.discard_bytes:
+        if not self._transport.is_closing() and self._discarded <= self._server.hub.limits.discard_bytes:
             self._transport.resume_reading()
         self._end_if_served()
 
