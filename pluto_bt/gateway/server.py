@@ -18,8 +18,7 @@ from pluto_bt.runtime.clock import wall_ns
 
 SLICE_BYTES, TURN_NS = 4096, 2_000_000
 """How much of one client's input is read, and for how long, before the others have their turn."""
-TICK_S, TICKS_A_SWEEP = 0.05, 10
-HANDSHAKE_S = 3.0
+TICK_S, TICKS_A_SWEEP, HANDSHAKE_S = 0.05, 10, 3.0
 
 
 class ClientProtocol(asyncio.Protocol):
@@ -103,6 +102,7 @@ class ClientProtocol(asyncio.Protocol):
         """Give up a client who has been told that it is over and lingers on; False for any other."""
         if not self._is_ending or self._transport.is_closing():
             return False
+        self._server.clients.pop(self._session.client, None)  # now, not when the loop comes round to it: many may come at once
         self._transport.abort()
         return True
 
