@@ -78,7 +78,15 @@ STREAMS: dict[str, Callable[[], Iterator[bytes]]] = {
     "pings": lambda: iter([b"<ping/>" * 10_000] * 20),
     "stops": lambda: iter([b"<stop/>" * 10_000] * 20),
     "gets": lambda: iter([b'<get topic="sick/scan"/>' * 2_000] * 20),
+    "describes": lambda: iter([b"<describe/>" * 5_000] * 20),
+    "new-names": lambda: (new_name() for _ in range(1_000)),
 }
+
+
+def new_name() -> bytes:
+    """A message whose tag nobody has ever heard."""
+    name = b"n%d." % wall_ns() + b"x" * 2_000
+    return b"<" + name + b"><!-- --></" + name + b">"
 
 
 def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]:
@@ -86,7 +94,7 @@ def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]
     cuts, most, longest_s = 0, 0, 0.0
     codes: set[str] = set()
     while now_s() < UNTIL_S[0] or not cuts:
-        begun_s, sent, heard = now_s(), 0, b""
+        begun_s, sent, heard = now_s(), 0, bytearray()
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=10.0) as connection:
             try:
                 for chunk in stream():

@@ -17,7 +17,7 @@ from pluto_bt.bench.row import BenchRow
 from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import NS, wait, wall_ns
 
-FLOODS = ("pings", "stops", "gets")
+FLOODS = ("pings", "stops", "gets", "describes", "new-names")
 ENDLESS = ("attribute", "text", "name", "comment", "white-space", "mission", "attributes", "depth", "mission-depth")
 GROUPS = {
     "endless messages": ENDLESS, "floods": FLOODS, "crowds": (*CROWDS, "storm"),

@@ -126,7 +126,7 @@ def _build(topic: str, value: m.Message) -> Callable[[], bytes]:
 
 # beside a whole robot ------------------------------------------------------------------------------------------------
 def _beside_a_robot() -> Iterator[BenchRow]:
-    with process_of("-m", "pluto_bt.bench.live_robot") as process:
+    with process_of("-m", "pluto_bt.bench.live_robot", f"gateway.clients={2 * CLIENTS}") as process:
         assert process.stdout is not None and process.stdin is not None
 
         def tell() -> dict[str, Any]:
@@ -158,7 +158,7 @@ def _watch(port: int, clients: int, seconds: float) -> None:
     with contextlib.ExitStack() as stack:
         poll = stack.enter_context(select.epoll())
         connections = {}
-        for _ in range(min(clients, Limits().clients - Limits().operator_places)):
+        for _ in range(clients):
             connection = stack.enter_context(socket.create_connection(("127.0.0.1", port)))
             connection.sendall(f'<subscribe topic="Localization/Pose" max_rate_hz="{HZ:g}"/>'.encode())
             connections[connection.fileno()] = connection

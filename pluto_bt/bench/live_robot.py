@@ -1,8 +1,8 @@
 """A whole robot on patrol in real time, in a process of its own, which tells how punctual its ticks are. For the gateway's benchmarks.
 
-`python -m pluto_bt.bench.live_robot` prints the gateway's port. For each line it reads it prints, as JSON, how late the ticks have been since the
-last line (ms), the gateway's process, the mission's state, when the base was last told to stand (wall, ns), and the events so far; it ends with
-its input.
+`python -m pluto_bt.bench.live_robot [NAME=VALUE …]`, with parameters as `pluto run --set` takes them, prints the gateway's port. For each line
+it reads it prints, as JSON, how late the ticks have been since the last line (ms), the gateway's process, the mission's state, when the base
+was last told to stand (wall, ns), and the events so far; it ends with its input.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Ear:
 
 def main() -> None:
     """Patrol until the input ends."""
-    request = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=-1"])
+    request = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=-1"], set=sys.argv[1:])
     events: list[Event] = []
     runner = make_runner(read_inputs(request), realtime=True, gateway="127.0.0.1:0", on_event=events.append)
     system = runner.system

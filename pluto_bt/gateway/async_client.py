@@ -52,7 +52,7 @@ class AsyncClient:
         until_s = self._loop.time() + self.timeout_s
         if self._has_hello and not await self._until(lambda: self.dialogue.welcome is not None, until_s):
             await self.close()
-            raise NoAnswerError("no-answer", f"{self._place} did not answer <hello> within {self.timeout_s:g} s")
+            raise self.dialogue.reason(NoAnswerError("no-answer", f"{self._place} did not answer <hello> within {self.timeout_s:g} s"))
         return self
 
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
@@ -224,7 +224,7 @@ class AsyncClient:
         why = f"the connection is gone ({error})" if error is not None else "the gateway closed the connection"
         self.dialogue.closed(why)
         if self._backoff is None:
-            self.dialogue.end(NoConnectionError("no-connection", why))
+            self.dialogue.end(self.dialogue.reason(NoConnectionError("no-connection", why)))
         elif self.dialogue.final is None:
             self._coming_back = self._loop.create_task(self._come_back(self._backoff))
         self._turn()

@@ -63,7 +63,7 @@ class Client:
         self._keeper.open()
         if (name or session or token) and not self._keeper.pump(lambda: self.dialogue.welcome is not None, self._keeper.clock() + timeout_s):
             self.close()
-            raise NoAnswerError("no-answer", f"{self._keeper.place} did not answer <hello> within {timeout_s:g} s")
+            raise self.dialogue.reason(NoAnswerError("no-answer", f"{self._keeper.place} did not answer <hello> within {timeout_s:g} s"))
 
     def __enter__(self) -> Self:
         return self

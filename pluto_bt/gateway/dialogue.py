@@ -21,7 +21,8 @@ KEPT = 10_000  # messages that nobody has read; beyond, the oldest are dropped
 QUIET_S = 10.0  # so long without a word, and the line is tried by a ping
 LINE_BYTES = 64 << 20  # what answers with longer lines is no gateway
 RENEWALS = 3  # in the time of one lease
-PASSING = frozenset({"slow-consumer", "timeout", "too-many-connections"})  # fatal, but a new connection may fare better
+NO_PLACE = "too-many-connections"
+PASSING = frozenset({"slow-consumer", "timeout", NO_PLACE})  # fatal, but a new connection may fare better
 
 
 class Dialogue:
@@ -44,6 +45,7 @@ class Dialogue:
         self.lease_error: GatewayError | None = None
         self.final: GatewayError | None = None
         self.is_open = self.is_dead = False
+        self._parting: GatewayError | None = None  # why the gateway ended the last connection, till the next one says anything else
         self._hello = {name: value for name, value in hello.items() if value}
         self._ids, self._count = ids, 0
         self._out = bytearray()
@@ -120,8 +122,18 @@ class Dialogue:
             if self._fates[id] == "moot":
                 self._end(id).hear(Element("ok", {"id": id}))
             elif one.tag == "hello" or self._fates[id] == "lost":
-                text = f"{why} before it answered <{one.tag}>; whether that was done is not known"
-                self._end(id).fail(NoConnectionError("no-connection", text))
+                self._end(id).fail(self._loss_of(one.tag, why))
+
+    def _loss_of(self, tag: str, why: str) -> GatewayError:
+        """What the one hears whose request went down with the connection: the gateway's own word, if it gave one."""
+        if self._parting is None:
+            return NoConnectionError("no-connection", f"{why} before it answered <{tag}>; whether that was done is not known")
+        doubt = "" if self._parting.code == NO_PLACE else f"; whether <{tag}> was done is not known"
+        return TurnedAwayError(self._parting.code, self._parting.text + doubt)
+
+    def reason(self, otherwise: GatewayError) -> GatewayError:
+        """Why there is no connection: the gateway's last word, if that was to end it."""
+        return self._parting or otherwise
 
     def end(self, error: GatewayError) -> None:
         """The conversation is over; everything that waits hears why."""
@@ -147,9 +159,12 @@ class Dialogue:
     def _hear(self, message: Element) -> None:
         id = message.get("id", "")
         if message.tag == "error" and message.get("fatal") == "true":
-            if message.get("code") not in PASSING:
-                self.end(error_in(message))
-        elif id not in self._asks:
+            self._parting = error_in(message)
+            if self._parting.code not in PASSING:
+                self.end(self._parting)
+            return
+        self._parting = None
+        if id not in self._asks:
             if id in self._given_up:
                 del self._given_up[id]
             elif id not in self._said_again or message.tag != "ok":
@@ -189,7 +204,7 @@ class Dialogue:
             if self.is_open:
                 one.fail(NoAnswerError("no-answer", f"no answer to <{one.tag}> within {self.timeout_s:g} s"))
             else:
-                one.fail(NoConnectionError("no-connection", f"no connection to say <{one.tag}> for {self.timeout_s:g} s"))
+                one.fail(self.reason(NoConnectionError("no-connection", f"no connection to say <{one.tag}> for {self.timeout_s:g} s")))
         if self.is_open and self._renew_s <= now_s:
             self._renew(now_s)
         if self.is_open and not self._is_pinging and now_s >= self._heard_s + QUIET_S:
@@ -201,7 +216,7 @@ class Dialogue:
         self.ask("lease", "", {"op": "renew"}, now_s).on_change = self._renewed
 
     def _renewed(self, one: Ask) -> None:
-        if one.error is not None and one.error.code not in ("no-connection", "no-answer"):
+        if one.error is not None and one.error.code not in ("no-connection", "no-answer", *PASSING):
             self.keep_lease(0.0, 0.0)
             self.lease_error = one.error
 
@@ -212,7 +227,7 @@ class Dialogue:
         self.welcome = one.reply
         if isinstance(one.error, NoAnswerError):
             self.is_dead = True
-        elif one.error is not None and not isinstance(one.error, NoConnectionError):
+        elif one.error is not None and one.error.code not in ("no-connection", *PASSING):
             self.end(one.error)  # who we say to be is refused, and would be again
 
     def _new_id(self) -> str:

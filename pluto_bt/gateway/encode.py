@@ -49,7 +49,7 @@ def _text(reply: AnyReply) -> str:  # one case a message: longer than a screen o
         case replies.LogLine():
             return _event(reply)
         case replies.Description():
-            return _description(reply)
+            return _with_id(reply, "description", {}, "".join(reply.items))
         case replies.Value():
             raise TypeError("a value is encoded by values.value_line")
 
@@ -103,14 +103,6 @@ def _params(reply: replies.ParamsState) -> str:
         shown: dict[str, Attribute] = {name: getattr(one, name) for name in one.__struct_fields__ if name != "value"}
         rows.append(element("p", shown, escape(one.value)))
     return _with_id(reply, "params", {"rev": reply.rev, "confirm_s": f"{reply.confirm_s:.3f}"}, "".join(rows))
-
-
-def _description(reply: replies.Description) -> str:
-    items = []
-    for item in reply.items:
-        fields = "".join(element("field", dict(field)) for field in item.fields)
-        items.append(element("item", dict(item.attributes), fields + element("doc", {}, escape(item.doc))))
-    return _with_id(reply, "description", {}, "".join(items))
 
 
 def _seconds(time_s: float) -> str:

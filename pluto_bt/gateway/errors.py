@@ -5,7 +5,7 @@ PlutoError
 └─ GatewayError            .code is the word of PROTOCOL.md, or one of the two of ours
    ├─ NoConnectionError    no-connection: no gateway there, or the connection went before the answer came
    ├─ NoAnswerError        no-answer: the gateway is there and did not answer in time
-   ├─ TurnedAwayError      the gateway ended the conversation and says why (every fatal code): a new connection would end alike
+   ├─ TurnedAwayError      the gateway ended the connection and says why (every fatal code)
    ├─ NoLeaseError         no-lease, lease-held: somebody else may drive
    ├─ WrongStateError      wrong-state, busy, conflict: not now; after a pause, a stopped thread, an answer
    ├─ EstoppedError        estopped: latched, until the holder of the lease releases it
@@ -40,7 +40,7 @@ class NoAnswerError(GatewayError):
 
 
 class TurnedAwayError(GatewayError):
-    """The gateway has ended the conversation."""
+    """The gateway has ended the conversation, or has no place for one just now (`too-many-connections`)."""
 
 
 class NoLeaseError(GatewayError):

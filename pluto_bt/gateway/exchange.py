@@ -11,10 +11,11 @@ from pluto_bt.gateway.desk import Desk
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
-from pluto_bt.gateway.requests import Get, Log, ShowModules, ShowTree, Why
+from pluto_bt.gateway.turns import Turns
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamped, Up, Watch, Welcome, pack_value
 
-REQUESTS_A_STEP = 64
+REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
+"""So much is answered in one step, and for so long; a request that has begun is answered to its end."""
 QUEUE = 16 * 1024
 HEARTBEAT_S = 0.25
 _EVENTS = "events"
@@ -28,9 +29,10 @@ class Exchange:
         self._port = port
         self._send = send
         self._audit = audit or Audit(None)
-        self._desk = Desk(port, send, self._audit)
+        self._answers = 0  # in this step
+        self._desk = Desk(port, self._answer, self._audit)
         self._inbox: deque[tuple[Up, int]] = deque()  # the one thing that both threads touch
-        self._queue: deque[tuple[Up, int]] = deque()
+        self._queue = Turns()
         self._watched: tuple[str, ...] = ()
         self._sent_seq: dict[str, int] = {}
         self._event_seq = 0
@@ -64,30 +66,27 @@ class Exchange:
         self._port.step(now_s)
         if has_room():
             self._publish(now_s)
-        self._take_in()
+        while self._inbox and len(self._queue) < QUEUE:
+            self._queue.add(self._inbox.popleft())
+        self._answers, until_s = 0, self._port.now_s() + STEP_S
         for _ in range(min(len(self._queue), REQUESTS_A_STEP)):
-            if not has_room():  # answers that nobody takes must not pile up here
-                break
-            frame, stops = self._queue.popleft()
-            if isinstance(frame, Ask):
-                self._desk.handle(frame, stops, now_s)
-            elif isinstance(frame, Gone):
-                self._desk.gone(frame.client)
-            elif isinstance(frame, Watch):
-                self._watch(frame.topics)
+            if not has_room() or self._answers > ANSWERS_A_STEP or self._port.now_s() > until_s:
+                break  # answers that nobody takes must not pile up here, nor the rest of the step wait
+            self._handle(*self._queue.next(), now_s)
         self._desk.step(now_s)
         self._audit.step()
 
-    def _take_in(self) -> None:
-        """Line up what the carrier's thread brought, without the inquiries of clients who are gone: nobody hears the answers."""
-        gone = set()
-        for _ in range(min(len(self._inbox), QUEUE - len(self._queue))):
-            item = self._inbox.popleft()
-            self._queue.append(item)
-            if isinstance(item[0], Gone):
-                gone.add(item[0].client)
-        if gone:
-            self._queue = deque(item for item in self._queue if not _is_inquiry_of(gone, item[0]))
+    def _handle(self, frame: Up, stops: int, now_s: float) -> None:
+        if isinstance(frame, Ask):
+            self._desk.handle(frame, stops, now_s)
+        elif isinstance(frame, Gone):
+            self._desk.gone(frame.client)
+        elif isinstance(frame, Watch):
+            self._watch(frame.topics)
+
+    def _answer(self, answer: Answer) -> None:
+        self._answers += 1
+        self._send(answer)
 
     def gateway_lost(self) -> None:
         """The gateway died."""
@@ -115,6 +114,3 @@ class Exchange:
             self._batch_s = now_s
             self._send(Batch(now_s, tuple(values), events))
 
-
-def _is_inquiry_of(clients: set[int], frame: Up) -> bool:
-    return isinstance(frame, Ask) and frame.client in clients and isinstance(frame.request, Get | ShowTree | ShowModules | Log | Why)

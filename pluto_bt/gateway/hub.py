@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from pluto_bt.gateway.channels import Channels
-from pluto_bt.gateway.describe import describe
+from pluto_bt.gateway.describe import Described, describe, described
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outlets import Outlets
@@ -37,7 +37,7 @@ class Hub:
         self.access = welcome.access
         self.topics = welcome.topics
         self.batch_s = float("-inf")  # when the executive last told what has changed
-        self._catalogue = welcome.catalogue
+        self._catalogue, self._described = welcome.catalogue, tuple[Described, ...]()
         self._send = send
         self._sessions: dict[int, Session] = {}
         self._evicted: list[int] = []  # who is still to be told
@@ -136,7 +136,8 @@ class Hub:
 
     def describe(self, request: Describe) -> Description:
         """What exists. Raises: RefusedError."""
-        return describe(request, self.topics, self._catalogue)
+        self._described = self._described or described(self.topics, self._catalogue)
+        return describe(request, self._described)
 
     def get(self, topic: str, now_s: float) -> Newest | None:
         """The newest value of a topic if it is known here; if not, it will be."""

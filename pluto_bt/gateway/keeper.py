@@ -104,23 +104,28 @@ class Keeper:
             self.line.settimeout(self._timeout_s)
             self.line.sendall(out)
         except OSError as error:
-            self._lost(f"the connection is gone ({error.strerror or error})")
+            while not isinstance(error, TimeoutError) and self._read(LEAST_WAIT_S):
+                pass  # who closed the line on us may have said why
+            if self.line is not None:
+                self._lost(f"the connection is gone ({error.strerror or error})")
 
-    def _read(self, for_s: float) -> None:
+    def _read(self, for_s: float) -> bool:
+        """Hear what comes in that time; False if nothing does."""
         if self.line is None:
-            return
+            return False
         try:
             self.line.settimeout(max(for_s, LEAST_WAIT_S))
             data = self.line.recv(READ_BYTES)
         except TimeoutError:
-            return
+            return False
         except OSError as error:
             self._lost(f"the connection is gone ({error.strerror or error})")
-            return
+            return False
         if data:
             self._dialogue.feed(data, self.clock())
         else:
             self._lost("the gateway closed the connection")
+        return bool(data)
 
     def _lost(self, why: str) -> None:
         self.hang_up()
@@ -128,7 +133,7 @@ class Keeper:
         if self.clock() - self._opened_s >= STEADY_S:
             self._attempt = 0
         if self._backoff is None:
-            self._dialogue.end(NoConnectionError("no-connection", why))
+            self._dialogue.end(self._dialogue.reason(NoConnectionError("no-connection", why)))
         else:
             self._put_off(self._backoff)
 

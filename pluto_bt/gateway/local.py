@@ -29,6 +29,11 @@ class LocalClient:
         """What the gateway has to send; with no room only what is never dropped."""
         return self._session.to_send(self._gateway.now_s, room_bytes)
 
+    @property
+    def is_over(self) -> bool:
+        """The gateway has ended the conversation, and all that it said was received."""
+        return self._session.closing and not self._session.queue
+
     def close(self) -> None:
         """The connection is gone."""
         self._gateway.hub.close(self._session)

@@ -12,19 +12,21 @@ from pluto_bt.gateway.replies import Cause, Item, ParamsState
 from pluto_bt.gateway.requests import Params
 from pluto_bt.source import PlutoError
 
+MOST_TEXT = 2000
 OnLoss = Literal["stop", "pause", "continue"]
 
 
 class RefusedError(PlutoError):
     """A request that is understood and not granted. `code` is one of the codes of PROTOCOL.md that are not fatal.
 
-    `line` and `column` are those of a document that came with the request, 0 without one; `more` holds its further faults.
+    `line` and `column` are those of a document that came with the request, 0 without one; `more` holds its further faults. A text that quotes
+    a word of kilobytes is cut short: what a client sends must not come back to fill our buffers.
     """
 
     def __init__(self, code: str, text: str, line: int = 0, column: int = 0, more: Sequence[RefusedError] = ()) -> None:
         super().__init__(text)
         self.code = code
-        self.text = text
+        self.text = text if len(text) <= MOST_TEXT else text[: MOST_TEXT - 1] + "…"
         self.line = line
         self.column = column
         self.more = tuple(more)

@@ -174,9 +174,9 @@ class Item(msgspec.Struct, frozen=True):
 
 
 class Description(Reply, frozen=True, kw_only=True):
-    """What exists."""
+    """What exists: each item as its element, ready to be sent."""
 
-    items: tuple[Item, ...]
+    items: tuple[str, ...]
 
 
 class Value(Reply, frozen=True, kw_only=True):

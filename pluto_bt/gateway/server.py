@@ -6,18 +6,19 @@ import asyncio
 import socket
 import ssl
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol, cast
 
 from pluto_bt.gateway.hub import Hub
 from pluto_bt.gateway.listen import BACKLOG
 from pluto_bt.gateway.outlets import Outlet
 from pluto_bt.gateway.session import Session
+from pluto_bt.gateway.sockets import common_name, keep_buffers_small
+from pluto_bt.runtime.clock import wall_ns
 
-SLICE_BYTES = 4096
-"""Bytes of one client that are read before the others have their turn."""
-TICK_S, TICKS_A_SWEEP = 0.05, 10
-HANDSHAKE_S = 3.0
+SLICE_BYTES, TURN_NS = 4096, 2_000_000
+"""How much of one client's input is read, and for how long, before the others have their turn."""
+TICK_S, TICKS_A_SWEEP, HANDSHAKE_S = 0.05, 10, 3.0
 
 
 class ClientProtocol(asyncio.Protocol):
@@ -29,6 +30,8 @@ class ClientProtocol(asyncio.Protocol):
         self._transport: asyncio.Transport
         self._session: Session
         self._unread: deque[bytes] = deque()
+        self._taking: Iterator[None] | None = None  # goes through what is unread
+        self._timers: list[asyncio.TimerHandle] = []
         self._is_full = False
         self._at_eof = False
         self._is_ending = False
@@ -43,7 +46,9 @@ class ClientProtocol(asyncio.Protocol):
         keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
         self._session = hub.open(self._loop.time())
         if len(self._server.clients) >= 2 * hub.limits.clients and not self._server.let_one_go():
-            self._transport.abort()  # so many that not even the error can be said to all
+            self._session.fail("too-many-connections", "too many others are being turned away just now")
+            self._transport.write(self._session.to_send(self._loop.time(), 0))
+            self._transport.close()  # at once, so that the error may be lost on the way
             return
         self._session.peer = ":".join(map(str, (self._transport.get_extra_info("peername") or ())[:2]))
         self._session.known_as(hub.access.by_certificate(common_name(self._transport)))
@@ -54,19 +59,14 @@ class ClientProtocol(asyncio.Protocol):
         self.flush()
 
     def data_received(self, data: bytes) -> None:
-        """Bytes: taken in slices, so that a big message of one client does not hold up the others."""
-        if self._is_ending:
+        """Bytes: taken in turns, so that what one client asks for does not hold up the others."""
+        if self._is_ending and self._taking is None:
             self._discard(data)
             return
-        if self._unread:
-            self._unread.extend(data[at : at + SLICE_BYTES] for at in range(0, len(data), SLICE_BYTES))
-            return
-        self._session.receive(data[:SLICE_BYTES], self._loop.time())
-        self.flush()
-        if len(data) > SLICE_BYTES:
-            self._unread.extend(data[at : at + SLICE_BYTES] for at in range(SLICE_BYTES, len(data), SLICE_BYTES))
-            self._transport.pause_reading()
-            self._loop.call_soon(self._read_slice)
+        self._unread.extend(data[at : at + SLICE_BYTES] for at in range(0, len(data), SLICE_BYTES))
+        if self._taking is None:
+            self._taking = self._messages()
+            self._turn()
 
     def eof_received(self) -> bool:
         """The client has said all; he may still wait for answers."""
@@ -86,10 +86,13 @@ class ClientProtocol(asyncio.Protocol):
         self.flush()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Gone; its socket is closed after this, and the number may be another's then."""
+        """Gone: its socket is closed after this, and the number may be another's then; and nothing may keep this object alive."""
         if self._outlet is not None:
             self._outlet.close()
         self._unread.clear()
+        self._taking = None
+        for timer in self._timers:
+            timer.cancel()
         self._server.clients.pop(self._session.client, None)
         self._server.hub.close(self._session)
 
@@ -98,6 +101,7 @@ class ClientProtocol(asyncio.Protocol):
         """Give up a client who has been told that it is over and lingers on; False for any other."""
         if not self._is_ending or self._transport.is_closing():
             return False
+        self._server.clients.pop(self._session.client, None)  # now, not when the loop comes round to it: many may come at once
         self._transport.abort()
         return True
 
@@ -108,15 +112,27 @@ class ClientProtocol(asyncio.Protocol):
         if self._discarded > self._server.hub.limits.discard_bytes:
             self._transport.pause_reading()
 
-    def _read_slice(self) -> None:
-        if self._transport.is_closing():
+    def _messages(self) -> Iterator[None]:
+        while self._unread:
+            yield from self._session.taking(self._unread.popleft(), self._loop.time())
+            yield
+
+    def _turn(self) -> None:
+        """Take a message after the other, as long as one's turn lasts and the answers can be sent; the rest in the next turn."""
+        if self._taking is None or self._transport.is_closing():
             return
-        self._session.receive(self._unread.popleft(), self._loop.time())
+        mark_bytes, until_ns = self._server.hub.limits.write_mark_bytes, wall_ns() + TURN_NS
+        for _ in self._taking:
+            if len(self._session.queue) > mark_bytes:
+                self.flush()
+            if self._is_full or wall_ns() > until_ns:
+                self.flush()
+                self._transport.pause_reading()
+                self._loop.call_soon(self._turn)
+                return
+        self._taking = None
         self.flush()
-        if self._unread:
-            self._loop.call_soon(self._read_slice)
-            return
-        if self._discarded <= self._server.hub.limits.discard_bytes:
+        if not self._transport.is_closing() and self._discarded <= self._server.hub.limits.discard_bytes:
             self._transport.resume_reading()
         self._end_if_served()
 
@@ -159,10 +175,10 @@ class ClientProtocol(asyncio.Protocol):
 
     def _end_if_served(self) -> None:
         """A client that has said all is let go when nothing of his is unread or unanswered."""
-        if self._at_eof and not self._unread and not self._session.is_waiting and not self._transport.is_closing():
+        if self._at_eof and self._taking is None and not self._session.is_waiting and not self._transport.is_closing():
             self._hold()
             self._transport.close()
-            self._loop.call_later(self._server.hub.limits.idle_s, self._transport.abort)  # one that does not read what waits must go, too
+            self._later(self._server.hub.limits.idle_s, self._transport.abort)  # one that does not read what waits must go, too
 
     def _end(self) -> None:
         """Half-close, go on discarding input, then close: a reset would swallow the error."""
@@ -174,8 +190,11 @@ class ClientProtocol(asyncio.Protocol):
         elif self._transport.can_write_eof():
             self._transport.write_eof()
         else:  # TLS has no half-close: the error is sent, then all ends
-            self._loop.call_later(linger_s, self._transport.close)
-        self._loop.call_later(2.0 * linger_s if not self._transport.can_write_eof() else linger_s, self._transport.abort)
+            self._later(linger_s, self._transport.close)
+        self._later(2.0 * linger_s if not self._transport.can_write_eof() else linger_s, self._transport.abort)
+
+    def _later(self, wait_s: float, act: Callable[[], None]) -> None:
+        self._timers.append(self._loop.call_later(wait_s, act))
 
 
 class Served(Protocol):
@@ -230,19 +249,3 @@ class Server:
         self._ticks += 1
         for protocol in tuple(self.clients.values()) if self._ticks % TICKS_A_SWEEP == 0 else ():
             protocol.tick(now_s)
-
-
-def keep_buffers_small(transport: asyncio.Transport, mark_bytes: int) -> None:
-    """Kernel and library would hide megabytes of stale values from a slow reader."""
-    transport.set_write_buffer_limits(high=mark_bytes)
-    connection = transport.get_extra_info("socket")
-    if connection is not None:
-        connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        if hasattr(socket, "TCP_NOTSENT_LOWAT"):
-            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, mark_bytes)
-
-
-def common_name(transport: asyncio.Transport) -> str:
-    """The common name of a verified client certificate, "" without one."""
-    subject = (transport.get_extra_info("peercert") or {}).get("subject", ())
-    return next((value for names in subject for name, value in names if name == "commonName"), "")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from pluto_bt.gateway import requests
@@ -79,10 +80,16 @@ class Session:
 
     # from the client ---------------------------------------------------------------------------------------------
     def receive(self, data: bytes, now_s: float) -> None:
-        """Bytes from the client."""
+        """Bytes from the client, all at once."""
+        for _ in self.taking(data, now_s):
+            pass
+
+    def taking(self, data: bytes, now_s: float) -> Iterator[None]:
+        """Bytes from the client, a message each time, so that others may have their turn between two of them."""
         self._heard_s = now_s
         for message in self._connection.feed(data, now_s):
             self._take(message, now_s)
+            yield
 
     def _take(self, message: Message, now_s: float) -> None:
         if self.closing and message.tag not in STOPS:

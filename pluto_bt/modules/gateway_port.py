@@ -11,6 +11,7 @@ from pluto_bt.gateway.port import Newest, RefusedError, RunState
 from pluto_bt.gateway.replies import Cause, Item, ParamsState
 from pluto_bt.gateway.requests import Params
 from pluto_bt.gateway.setting import message_from
+from pluto_bt.maps.numbers import MAX_METRES
 from pluto_bt.modules.catalogue import catalogue
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.executive import module_state
@@ -93,6 +94,7 @@ class GatewayPort:
 
     def post_command(self, target: str, command: ActuatorState, source: str) -> None:
         """Give a command to a link of the chain or to the wrist."""
+        _require_sane(command)
         self._missions.require_idle("pause it first")
         if target != "wrist":
             self._latch.release(OPERATOR_STOP)  # a new command is a deliberate act
@@ -212,3 +214,11 @@ class GatewayPort:
             self._is_interactive = True
             entry["interactive"] = True
         self._system.trace.line(entry)
+
+
+def _require_sane(command: ActuatorState) -> None:
+    """No number of a command, whatever its flags make of it, is larger than any place. Raises: RefusedError."""
+    for field in ("position", "velocity", "acceleration", "force"):
+        beyond = [number for number in getattr(command, field) if not abs(number) <= MAX_METRES]
+        if beyond:
+            raise RefusedError("out-of-range", f"<{field}>: expected numbers of at most {MAX_METRES:g}, found {beyond[0]:g}")

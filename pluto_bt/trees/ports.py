@@ -13,6 +13,8 @@ from pluto_bt.trees.values import ANYTHING, Kind, PortProblem
 
 Direction = Literal["in", "out", "inout"]
 
+POSE = kind_of_type(tuple[float, float, float])
+
 __all__ = ["Direction", "PortModel", "PortProblem", "is_beyond", "models_of_class", "range_problem"]
 
 
@@ -57,12 +59,13 @@ def range_problem(model: PortModel, value: Any) -> str:
     """Why `value` is outside what the port allows, or ""."""
     if model.choices and value not in model.choices:
         return f"expected one of {', '.join(model.choices)}"
+    is_place = model.unit == "m" or model.kind is POSE
     for number in _numbers_in(value):
         if math.isnan(number):
             return "not a number"
-        if math.isinf(number) and model.unit:  # what has a unit is a quantity of the world
+        if math.isinf(number) and (model.unit or is_place):  # what has a unit is a quantity of the world
             return "not finite"
-        if model.unit == "m" and abs(number) > MAX_METRES:
+        if is_place and abs(number) > MAX_METRES:
             return f"no place or distance is beyond {MAX_METRES:g} m"
         if model.ge is not None and number < model.ge:
             return f"{number:g} is below {model.ge:g}"

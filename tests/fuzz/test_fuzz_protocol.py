@@ -36,6 +36,8 @@ def survives(data: bytes) -> None:
 FOUND = [
     b'\"\n<params op="set" rev="1"><p <ping/>name="<describe/>a">1<![CDATA[a">1</p></\xf0arams><</\xf0arams><why a\'1\'/>=lo <modules/>',
     b"<<:eas> o<?xml vers\x00ion='0.0<run id='7' node='GoTo' goal='2;2'/>'?>p=<\xff\xff",
+    b"=<\xf3/><",
+    b"\x20<set><value>" + bytes(40) + b"</value></set>",
 ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import pytest
 
@@ -13,6 +13,7 @@ from pluto_bt.gateway.client import Backoff, Client
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
+from pluto_bt.gateway.replies import Item
 from pluto_bt.gateway.uring import Uring
 from pluto_bt.runtime.clock import MonotonicClock
 
@@ -22,8 +23,9 @@ from .robot import FakeRobot
 class Running:
     """A link that a thread steps, as the scheduler would."""
 
-    def __init__(self, console: Console | None = None, access: Access | None = None) -> None:
+    def __init__(self, console: Console | None = None, access: Access | None = None, items: Sequence[Item] = ()) -> None:
         self.robot = FakeRobot()
+        self.robot.items = list(items)
         self.link = GatewayLink(self.robot, Address("127.0.0.1", 0), access, Limits(linger_s=0.3), console=console)
         self.clock = MonotonicClock()
         self.link.start(0.0)

@@ -33,6 +33,9 @@ class Line:
             data = b"" if self._bench.is_silent else self._end.received()
             if data:
                 return data
+            if self._end.is_over:
+                self.close()
+                break
             if self._bench.now_s >= until_s:
                 raise TimeoutError
             self._bench.go_on(min(STEP_S, until_s - self._bench.now_s))

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from pluto_bt.blackboard import messages as m
-from pluto_bt.gateway.client import Client
+from pluto_bt.gateway.client import Backoff, Client
 from pluto_bt.gateway.dialogue import Dialogue
 from pluto_bt.gateway.errors import (
     BadRequestError,
@@ -20,9 +20,10 @@ from pluto_bt.gateway.errors import (
     TurnedAwayError,
     WrongStateError,
 )
+from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RunState
 
-from .lines import Bench
+from .lines import SOON, Bench
 
 
 @pytest.fixture
@@ -221,6 +222,44 @@ def test_the_end_of_the_run_is_the_end(bench: Bench) -> None:
         with pytest.raises(TurnedAwayError) as error:
             client.request("ping")
         assert error.value.code == "shutdown"
+
+
+@pytest.fixture
+def full(bench: Bench) -> Bench:
+    """All places but the operators' are taken, until the tenth second."""
+    crowd = [bench.gateway.connect() for _ in range(Limits().clients - Limits().operator_places)]
+    bench.on_step = lambda: [one.close() for one in crowd] if bench.now_s > 10.0 else None  # type: ignore[assignment,return-value]
+    return bench
+
+
+TURNED_AWAY = "the last places are for operators"
+
+
+@pytest.mark.parametrize("backoff", [None, SOON])
+def test_who_finds_no_place_hears_so_in_his_first_request(full: Bench, backoff: Backoff | None) -> None:
+    for tag, more in (("ping", {}), ("lease", {"op": "acquire"})):
+        with pytest.raises(TurnedAwayError, match=TURNED_AWAY) as error:
+            full.client(backoff).request(tag, **more)
+        assert error.value.code == "too-many-connections" and "not known" not in error.value.text
+    with pytest.raises(TurnedAwayError, match=TURNED_AWAY):
+        full.client(backoff, name="anna")
+
+
+def test_who_finds_no_place_is_let_in_when_there_is_one(full: Bench) -> None:
+    full.go_on(8.0)
+    client = full.client(name="anna")
+    client.lease()
+    assert len(full.lines) > 2
+
+
+def test_who_reads_too_slowly_hears_so_and_that_his_request_may_be_done(bench: Bench) -> None:
+    client = bench.client(backoff=None)
+    bench.is_silent = True
+    one = client.dialogue.ask("lease", "", {"op": "acquire"}, bench.now_s)
+    client.dialogue.feed(b'<error code="slow-consumer" fatal="true">600000 bytes wait</error>\n', bench.now_s)
+    client.dialogue.closed("the gateway closed the connection")
+    with pytest.raises(TurnedAwayError, match="600000 bytes wait; whether <lease> was done is not known"):
+        one.answer()
 
 
 def test_what_speaks_no_xml_is_no_gateway(bench: Bench) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -60,9 +62,9 @@ ATTACKS = [
     # bytes                                                                     code               line, column
     (b'<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', "restricted-xml", 1, 1),
     (b'<?xml version="1.0"?><!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "restricted-xml", 1, 22),
-    (b"<a><!DOCTYPE a></a>", "restricted-xml", 1, 5),
-    (b"<a>&b;</a>", "restricted-xml", 1, 7),
-    (b'<a b="&c;"/>', "restricted-xml", 1, 10),
+    (b"<a><!DOCTYPE a></a>", "restricted-xml", 1, 6),
+    (b"<a>&b;</a>", "restricted-xml", 1, 4),
+    (b'<a b="&c;"/>', "restricted-xml", 1, 1),
     (b"<a><?php x?></a>", "restricted-xml", 1, 1),
     (b"<?php x?><a/>", "restricted-xml", 1, 1),
     (b'<a/><?xml version="1.0"?>', "restricted-xml", 1, 5),
@@ -74,19 +76,21 @@ ATTACKS = [
     (b"<a>\xff</a>", "bad-encoding", 1, 4),
     (b"<a b='\xc3('/>", "bad-encoding", 1, 7),
     (b"<a>\xed\xa0\x80</a>", "bad-encoding", 1, 4),
+    (b"<\xf3/>", "bad-encoding", 1, 1),
+    (b"<a></\xe2\x82>", "bad-encoding", 1, 6),
     (b"<a>\x00</a>", "not-well-formed", 1, 4),
-    (b"<a>&#0;</a>", "not-well-formed", 1, 8),
+    (b"<a>&#0;</a>", "not-well-formed", 1, 4),
     (b"GET / HTTP/1.1\r\nHost: x\r\n\r\n", "not-well-formed", 1, 1),
     (b"\x16\x03\x01\x02\x00", "not-well-formed", 1, 1),
     (b"SSH-2.0-OpenSSH_9.2\r\n", "not-well-formed", 1, 1),
     (b"<a/>\nrubbish", "not-well-formed", 2, 1),
     (b"<a/></a>", "not-well-formed", 1, 5),
     (b"</private>", "not-well-formed", 1, 1),
-    (b"<a></private>", "not-well-formed", 1, 14),
+    (b"<a></private>", "not-well-formed", 1, 6),
     (b"<!-- between -->", "not-well-formed", 1, 1),
     (b"<![CDATA[x]]>", "not-well-formed", 1, 1),
-    (b"<a>\n  <b></a>", "not-well-formed", 2, 10),
-    (b"<a b='1' b='2'/>", "not-well-formed", 1, 15),
+    (b"<a>\n  <b></a>", "not-well-formed", 2, 8),
+    (b"<a b='1' b='2'/>", "not-well-formed", 1, 10),
     (b"<a b=1/>", "not-well-formed", 1, 6),
     (b"<1/>", "not-well-formed", 1, 1),
     (b"<ping/><" + b"n" * BIG, "too-large", 1, 8),
@@ -127,6 +131,21 @@ def test_limits_let_pass_what_is_just_within_them() -> None:
     ):
         seen, error = run([stream, b"<ping/>"])
         assert error is None and len(seen) == 2, (error and error.text, stream[:20])
+
+
+NAMING = ["<n{name}><!-- --></n{name}>", '<ping n{name}="&amp;"/>', '<ping xmlns:n="{name}"/>', "<ping><n{name}/><!-- --></ping>"]
+
+
+@pytest.mark.parametrize("form", NAMING)
+def test_new_names_leave_nothing_behind(form: str) -> None:
+    before_mb = rss_mb()
+    for number in range(500):
+        run([form.format(name=f"{number}." + "x" * 20_000).encode()])  # 20 MB of names
+    assert rss_mb() - before_mb < 5.0
+
+
+def rss_mb() -> float:
+    return int(Path("/proc/self/status").read_text(encoding="ascii").split("VmRSS:")[1].split()[0]) / 1024
 
 
 def test_strangers_are_told_what_this_port_is() -> None:

@@ -323,6 +323,32 @@ def test_more_requests_than_the_executive_takes_are_busy() -> None:
     assert brief(story.says(story.client(), "<modules/>" * 5)) == ["error busy", "error busy", "modules", "modules", "modules"]
 
 
+def test_who_asks_for_long_work_waits_for_it_himself(story: Story) -> None:
+    def read_for_a_second(op: str, name: str, text: str, source: str) -> None:
+        story.robot.time_s += 1.0
+
+    story.robot.mission = read_for_a_second  # type: ignore[method-assign]
+    busy, other = story.client(), story.client()
+    busy.send('<mission op="check"><root/></mission>' * 20)
+    other.send('<lease op="query"/>')
+    story.step()
+    story.step()
+    assert brief(story.hears(other)) == ["lease_state"]
+    assert len(story.hears(busy)) <= 2
+
+
+def test_answers_to_one_question_do_not_fill_a_step(story: Story) -> None:
+    for number in range(200):
+        story.robot.says(f"word {number}")
+    client = story.client()
+    client.send("<log/>" * 10)
+    story.step()
+    assert len(story.hears(client)) < 2 * 256
+    for _ in range(9):
+        story.step()
+    assert [answer.tag for answer in story.hears(client)].count("ok") > 6
+
+
 def test_the_last_places_are_for_operators() -> None:
     story = Story(Limits(clients=3, operator_places=2))
     story.client("<hello/>")

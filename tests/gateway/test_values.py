@@ -16,7 +16,7 @@ from pluto_bt import gateway
 from pluto_bt.blackboard import messages as m
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway import replies, wire
-from pluto_bt.gateway.describe import describe
+from pluto_bt.gateway.describe import describe, described
 from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.read_values import message_of
 from pluto_bt.gateway.requests import Describe
@@ -115,7 +115,7 @@ EVERY_REPLY: list[replies.AnyReply] = [
     replies.LogLine(seq=1, event=m.Event(1.0, "warning", "say", "x", NASTY), is_cleared=True),
     replies.ParamsState(rev=3, confirm_s=1.5, rows=(replies.Param("a.b_m", NASTY, "a number", "m", ">= 0", "1", True),)),
     replies.Mission(state=m.MissionState(0.0), text=NASTY),
-    describe(Describe(), [topic.name for topic in TOPICS], catalogue(())),
+    describe(Describe(), described([topic.name for topic in TOPICS], catalogue(()))),
 ]
 
 

@@ -57,7 +57,10 @@ class WebClient:
     async def _read(self, data: bytes) -> None:
         """In slices, so that a big message does not hold up the other clients."""
         for at in range(0, len(data), SLICE_BYTES):
-            self._session.receive(data[at : at + SLICE_BYTES], self._loop.time())
+            for _ in self._session.taking(data[at : at + SLICE_BYTES], self._loop.time()):
+                if len(self._session.queue) > self._server.hub.limits.write_mark_bytes:
+                    self.flush()
+                    await asyncio.sleep(0)
             self.flush()
             if at + SLICE_BYTES < len(data):
                 await asyncio.sleep(0)

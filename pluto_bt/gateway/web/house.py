@@ -10,7 +10,7 @@ from aiohttp import web
 from aiohttp.typedefs import Middleware
 
 from pluto_bt.gateway.access import Access, Key
-from pluto_bt.gateway.server import common_name
+from pluto_bt.gateway.sockets import common_name
 from pluto_bt.gateway.wire import Scenery
 
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}

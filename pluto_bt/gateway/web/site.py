@@ -6,7 +6,8 @@ import socket
 
 from aiohttp import web
 
-from pluto_bt.gateway.server import Server, keep_buffers_small
+from pluto_bt.gateway.server import Server
+from pluto_bt.gateway.sockets import keep_buffers_small
 from pluto_bt.gateway.web.client import WebClient
 from pluto_bt.gateway.web.doorkeeper import Doorkeeper
 from pluto_bt.gateway.web.house import make_app
