@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -144,8 +143,8 @@ def read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest |
         if keys is not None:
             faults.error(Place("--ssh-keys"), "bad-usage", "--ssh-keys is for --ssh", mend="add --ssh HOST:PORT")
         return None
-    from pluto_bt.gateway.listen import parse_address
-    from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest, open_ssh_listener
+    from pluto_bt.gateway.listen import open_listener, parse_address
+    from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest
 
     missing = [name for name in ("asyncssh", "prompt_toolkit") if find_spec(name) is None]
     if missing:
@@ -157,10 +156,10 @@ def read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest |
     path = default_keys() if keys is None else Path(keys).expanduser()
     check_keys(path, faults)
     try:
-        address = parse_address(text if ":" in text or text.isdigit() else f"{text}:{DEFAULT_PORT}")
-        open_ssh_listener(address).close()
+        address = parse_address(text, "--ssh", DEFAULT_PORT)
+        open_listener(address, option="--ssh").close()
     except InputError as error:
-        faults.extend(replace(fault, file="--ssh") for fault in error.faults)
+        faults.extend(error.faults)
         return None
     return SshRequest(address, path.absolute())
 

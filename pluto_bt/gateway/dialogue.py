@@ -20,7 +20,7 @@ Element = ElementTree.Element
 KEPT = 10_000  # messages that nobody has read; beyond, the oldest are dropped
 QUIET_S = 10.0  # so long without a word, and the line is tried by a ping
 LINE_BYTES = 64 << 20  # what answers with longer lines is no gateway
-RENEWALS = 3  # in the time of one lease
+RENEWALS = 3  # in the time of one lease, if nothing else is asked for
 PASSING = frozenset({"slow-consumer", "timeout", "too-many-connections"})  # fatal, but a new connection may fare better
 
 
@@ -29,6 +29,7 @@ class Dialogue:
 
     Attributes:
         inbox: messages that answer no request: values, events, and what follows an `ok`; `dropped` counts those that nobody read in time.
+        streams: by id of a request; what follows its answer goes there instead of the inbox.
         welcome: the gateway's last `<hello>`.
         lease_error: why the lease that was to be kept is not ours any more.
         final: why the conversation is over for good.
@@ -39,6 +40,7 @@ class Dialogue:
         """`hello`: its attributes, "" = not said. `ids`: what all our ids begin with; it must be new for each client of a session."""
         self.timeout_s = timeout_s
         self.inbox: deque[Element] = deque()
+        self.streams: dict[str, deque[Element]] = {}
         self.dropped = 0
         self.welcome: Element | None = None
         self.lease_error: GatewayError | None = None
@@ -55,7 +57,7 @@ class Dialogue:
         self._said_again: set[str] = set()  # ids of subscriptions that are not answered anew
         self._heard_s = 0.0
         self._is_pinging = False
-        self._ttl_s = 0.0  # of the lease that is kept; 0 = none
+        self._every_s = 0.0  # the lease is renewed; 0 = it is not
         self._renew_s = math.inf
         self._topics: dict[str, str] = {}  # id of a subscribe that is not answered -> its topic
 
@@ -78,6 +80,11 @@ class Dialogue:
             self._out += one.line
         return one
 
+    def forget(self, one: Ask) -> None:
+        """Nobody waits for its answer any more: it is not said again on another connection."""
+        if one.id in self._asks:
+            self._given_up[self._end(one.id).id] = None
+
     def say(self, data: bytes) -> None:
         """Bytes as they are; what comes back is for the inbox."""
         self._out += data
@@ -88,10 +95,10 @@ class Dialogue:
         self.say((element(tag, given, body) + "\n").encode())
         return str(given["id"])
 
-    def keep_lease(self, ttl_s: float, now_s: float) -> None:
-        """Renew the lease from now on, `RENEWALS` times in each ttl; 0 = no more."""
-        self._ttl_s, self.lease_error = ttl_s, None
-        self._renew_s = now_s + ttl_s / RENEWALS if ttl_s > 0.0 else math.inf
+    def keep_lease(self, every_s: float, now_s: float) -> None:
+        """Renew the lease from now on, so often; 0 = no more."""
+        self._every_s, self.lease_error = every_s, None
+        self._renew_s = now_s + every_s if every_s > 0.0 else math.inf
 
     def to_send(self) -> bytes:
         """What the connection is to carry now."""
@@ -110,7 +117,7 @@ class Dialogue:
             self.ask("hello", "", {"version": "1.0", **self._hello}, now_s).on_change = self._greeted
         for line in again:
             self._out += line
-        if self._ttl_s:
+        if self._every_s:
             self._renew(now_s)
 
     def closed(self, why: str) -> None:
@@ -169,6 +176,10 @@ class Dialogue:
         one.hear(message)
 
     def _keep(self, message: Element) -> None:
+        stream = self.streams.get(message.get("id", ""))
+        if stream is not None:
+            stream.append(message)
+            return
         self.inbox.append(message)
         if len(self.inbox) > KEPT:
             self.inbox.popleft()
@@ -197,7 +208,7 @@ class Dialogue:
             self.ask("ping", "", {}, now_s).on_change = self._pinged
 
     def _renew(self, now_s: float) -> None:
-        self._renew_s = now_s + self._ttl_s / RENEWALS
+        self._renew_s = now_s + self._every_s
         self.ask("lease", "", {"op": "renew"}, now_s).on_change = self._renewed
 
     def _renewed(self, one: Ask) -> None:

@@ -174,7 +174,7 @@ class Visit(asyncssh.SSHServerSession[str]):
         except Exception as error:  # told to the one who asked, not to the terminal of the run
             self._face.complain(f"internal: {type(error).__name__}: {error}")
         finally:
-            self._robot.close()
+            await self._robot.close()
             with suppress(OSError):
                 self._channel.exit(code)
             self._channel.close()

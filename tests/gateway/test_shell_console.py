@@ -128,7 +128,7 @@ def test_the_bottom_line_is_honest(running: Running) -> None:
     events: list[str] = []
 
     async def watch() -> None:
-        live = Live(running.address, lambda line, level: events.append(line))
+        live = Live(Robot(running.address), lambda line, level: events.append(line))
         assert "NO LINK" in live.line()
         await until(lambda: "m/s" in live.line(), live.line)
         assert "pose unknown" in live.line() and "no mission" in live.line()
@@ -143,7 +143,7 @@ def test_the_bottom_line_is_honest(running: Running) -> None:
         await until(lambda: "NO LINK to 127.0.0.1" in live.line() or bool(events), live.line)
         await until(lambda: "NO LINK" not in live.line() and "m/s" in live.line(), live.line)
         assert any("connection lost" in event for event in events)
-        live.close()
+        await live.close()
 
     asyncio.run(watch())
 
