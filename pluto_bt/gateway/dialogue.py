@@ -19,6 +19,7 @@ from pluto_bt.gateway.xml_text import Attribute, element
 Element = ElementTree.Element
 KEPT = 10_000  # messages that nobody has read; beyond, the oldest are dropped
 QUIET_S = 10.0  # so long without a word, and the line is tried by a ping
+MUTE_S = 20.0  # so long have we said nothing: the gateway takes who is mute for a minute for gone, however well he listens
 LINE_BYTES = 64 << 20  # what answers with longer lines is no gateway
 RENEWALS = 3  # in the time of one lease, if nothing else is asked for
 PASSING = frozenset({"slow-consumer", "timeout", "too-many-connections"})  # fatal, but a new connection may fare better
@@ -55,7 +56,7 @@ class Dialogue:
         self._subscriptions: dict[str, Ask] = {}  # by topic or pattern
         self._given_up: dict[str, None] = {}
         self._said_again: set[str] = set()  # ids of subscriptions that are not answered anew
-        self._heard_s = 0.0
+        self._heard_s = self._said_s = 0.0
         self._is_pinging = False
         self._every_s = 0.0  # the lease is renewed; 0 = it is not
         self._renew_s = math.inf
@@ -71,6 +72,7 @@ class Dialogue:
             one.fail(self.final or BadRequestError("invalid", f'the id "{id}" is that of another request, which is not answered yet'))
             return one
         self._asks[id] = one
+        self._said_s = now_s
         self._fates[id] = fate(tag, given, "session" in self._hello)
         if tag == "subscribe":
             self._topics[id] = str(given["topic"])
@@ -109,7 +111,7 @@ class Dialogue:
     def opened(self, now_s: float) -> None:
         """A connection stands: say who we are, subscribe again, say again what is not answered."""
         self.is_open, self.is_dead, self._is_pinging = True, False, False
-        self._rest, self._out, self._heard_s = b"", bytearray(), now_s
+        self._rest, self._out, self._heard_s, self._said_s = b"", bytearray(), now_s, now_s
         self._given_up.clear()
         self._said_again = {one.id for one in self._subscriptions.values()}
         again = [one.line for one in (*self._subscriptions.values(), *self._asks.values())]
@@ -189,8 +191,12 @@ class Dialogue:
     @property
     def due_s(self) -> float:
         """When `tick` has something to do."""
-        quiet_s = self._heard_s + QUIET_S if self.is_open and not self._is_pinging else math.inf
-        return min(self._renew_s if self.is_open else math.inf, quiet_s, *(one.ends_s for one in self._asks.values()), math.inf)
+        return min(self._renew_s if self.is_open else math.inf, self._ping_s, *(one.ends_s for one in self._asks.values()), math.inf)
+
+    @property
+    def _ping_s(self) -> float:
+        """When one of us has been silent for too long."""
+        return min(self._heard_s + QUIET_S, self._said_s + MUTE_S) if self.is_open and not self._is_pinging else math.inf
 
     def tick(self, now_s: float) -> None:
         """Give up what is overdue, renew the lease, try a silent line."""
@@ -203,7 +209,7 @@ class Dialogue:
                 one.fail(NoConnectionError("no-connection", f"no connection to say <{one.tag}> for {self.timeout_s:g} s"))
         if self.is_open and self._renew_s <= now_s:
             self._renew(now_s)
-        if self.is_open and not self._is_pinging and now_s >= self._heard_s + QUIET_S:
+        if now_s >= self._ping_s:
             self._is_pinging = True
             self.ask("ping", "", {}, now_s).on_change = self._pinged
 

@@ -127,8 +127,9 @@ def test_what_was_stopped_is_not_shown_as_running(tmp_path: Path) -> None:
     """An errand beside a paused mission is stopped: tree and why speak of the mission again, and everybody reads who stopped it."""
     asks = '<get id="tree{0}" topic="tree"/><why id="why{0}"/>'
     talk = Talk(tmp_path, {
-        2.0: '<hello name="anna"/><mission op="pause"/><lease op="acquire" ttl_s="60"/>', 3.0: '<run node="GoTo" goal="20;0"/>', 6.0: asks.format(1),
-        7.0: "<stop/><stop/>", 9.0: asks.format(2) + '<tree id="drawn" format="ascii"/><log id="log" since="0" level="warning"/>', 9.5: '<mission op="abort"/>',
+        2.0: '<hello name="anna"/><mission op="pause"/><lease op="acquire" ttl_s="60"/>',
+        3.0: '<run node="GoTo" goal="20;0"/>', 6.0: asks.format(1), 7.0: "<stop/><stop/>",
+        9.0: asks.format(2) + '<tree id="drawn" format="ascii"/><log id="log" since="0" level="warning"/>', 9.5: '<mission op="abort"/>',
     })  # fmt: skip
     before, after = ([(node.get("name"), node.get("status")) for node in talk.told(f"tree{i}")[0].iter("node")] for i in (1, 2))
     assert before == [("GoTo", "RUNNING")] and after == [("ahead", "RUNNING")], "paused, it runs on where it stood"
