@@ -174,6 +174,8 @@ def test_modules_events_and_the_state_of_a_device_are_shown(running: Running) ->
     assert code == 0 and "hello from the mission" in text and "\x1b" not in text and "gotcha" in text
     assert "hello" not in say(running, "events", "warning")[1]
     assert "heading_rad      1.5" in say(running, "compass", "state")[1]
+    running.robot.write("wrist/state", m.ActuatorState(0.0, 0, (0.1 + 0.2, -1.0 / 3.0)))
+    assert "position         0.3 -0.3333333\n" in say(running, "wrist", "state")[1]
     code, text = say(running, "gas", "state")
     assert code == 1 and "nobody writes it in this run, or not yet" in text
 

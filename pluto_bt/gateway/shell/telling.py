@@ -21,8 +21,8 @@ def shown(value: Element) -> str:
     """A value for a person: a line a field, long lists cut; codes with their names."""
     lines = [f"{value.get('topic')}  at {value.get('stamp')} s, age {value.get('age')} s"]
     for part in value:
-        words = (part.text or "").split(" ")
-        text = part.text or " ".join(f"{key}={word}" for key, word in part.attrib.items())
+        words = _short((part.text or "").split(" "))
+        text = " ".join(words) or " ".join(f"{key}={word}" for key, word in part.attrib.items())
         cut = f"{' '.join(words[:LONG_LIST])} … ({len(words)} in all)" if len(words) > LONG_LIST and part.tag != "text" else text
         lines.append(f"  {part.tag:<16} {cut}")
     return "\n".join(lines)
@@ -42,6 +42,12 @@ def as_json(value: Element) -> str:
             fields[part.tag] = (numbers[0] if len(numbers) == 1 else numbers) if is_numeric else part.text or ""
     head = {"topic": value.get("topic"), "seq": int(value.get("seq", "0")), "stamp_s": float(value.get("stamp", "0"))}
     return json.dumps({**head, **fields}, ensure_ascii=False)
+
+
+def _short(words: list[str]) -> list[str]:
+    """Numbers without the digits that no sensor has; a text as it is."""
+    values = [_number(word) for word in words]
+    return words if None in values else [f"{value:.7g}" if "." in word else word for value, word in zip(values, words, strict=True)]
 
 
 def _number(word: str) -> float | None:
