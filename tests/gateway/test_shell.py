@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import json
+import math
 import signal
 import subprocess
 import sys
@@ -287,7 +288,12 @@ def test_every_row_has_help_and_no_two_of_a_shell_have_one_name(running: Running
 
 def test_values_that_are_no_numbers_survive_as_text(running: Running) -> None:
     running.robot.write("mission/state", m.MissionState(0.0, "a b", 3, "running"))
-    code, text = say(running, "record", "0.1", "-", "mission/state")
+    running.robot.write("drive/status", m.FVectorState(0.0, (math.inf, 0.5), (6,)))
+    running.robot.write("tree", m.TreeState(0.0, 7))
+    code, text = say(running, "record", "0.1", "-", "mission", "drive/status", "tree")
     assert code == 0
+    told = {value["topic"]: value for value in map(json.loads, text.splitlines())}
+    assert (told["drive/status"]["data"], told["drive/status"]["element"]) == ([None, 0.5], [6])
+    assert told["drive/status"]["status"][0]["name"] == "laser-slow-stop" and (told["tree"]["tick"], told["tree"]["node"]) == (7, [])
     value: dict[str, Any] = json.loads(text.splitlines()[0])
     assert (value["name"], value["run"], value["state"]) == ("a b", 3, "running")
