@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -232,9 +234,8 @@ def test_the_emergency_stop_holds_until_it_is_released(open_console: Callable[..
 def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.waits_for("#pose-x", "4.00")
-    process = running.link._process
-    assert process is not None
-    process.kill()
+    assert running.link.pid is not None
+    os.kill(running.link.pid, signal.SIGKILL)
     screen.waits_for("#no-link", "No link", "old")
     screen.waits_for("#verdict", "Unknown")
     screen.waits_for("#link", "ms")

@@ -295,5 +295,5 @@ def test_values_that_are_no_numbers_survive_as_text(running: Running) -> None:
     told = {value["topic"]: value for value in map(json.loads, text.splitlines())}
     assert (told["drive/status"]["data"], told["drive/status"]["element"]) == ([None, 0.5], [6])
     assert told["drive/status"]["status"][0]["name"] == "laser-slow-stop" and (told["tree"]["tick"], told["tree"]["node"]) == (7, [])
-    value: dict[str, Any] = json.loads(text.splitlines()[0])
-    assert (value["name"], value["run"], value["state"]) == ("a b", 3, "running")
+    mission: dict[str, Any] = told["mission"]
+    assert (mission["name"], mission["run"], mission["state"]) == ("a b", 3, "running")
