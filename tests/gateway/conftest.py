@@ -89,3 +89,12 @@ def unpumped() -> Iterator[Running]:
 def running(unpumped: Running) -> Running:
     unpumped.pump()
     return unpumped
+
+
+@pytest.fixture(scope="module")
+def lasting() -> Iterator[Running]:
+    """One gateway for all tests of a file; `renew` wipes off what one of them leaves on the robot."""
+    running = Running()
+    running.pump()
+    yield running
+    running.end()

@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,15 +26,6 @@ from .conftest import Running
 
 RUNS = itertools.count(1, 2)  # the gateway of all these tests has seen the missions of each
 PORTS = {leaf.__name__: set(leaf.INPUT_PORTS) for leaf in LEAVES}
-
-
-@pytest.fixture(scope="module")
-def lasting() -> Iterator[Running]:
-    """One gateway for all tests of this file: what they leave on the robot is wiped off before the next."""
-    running = Running()
-    running.pump()
-    yield running
-    running.end()
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import contextlib
 import os
 import re
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
@@ -85,14 +85,6 @@ def talk(running: Running, story: Callable[[PipeInput, Screen], object]) -> None
                     await talking
 
     asyncio.run(play())
-
-
-@pytest.fixture(scope="module")
-def lasting() -> Iterator[Running]:
-    running = Running()
-    running.pump()
-    yield running
-    running.end()
 
 
 @pytest.fixture
