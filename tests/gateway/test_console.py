@@ -299,6 +299,20 @@ def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Calla
     assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
 
 
+def test_a_mission_that_goes_on_needs_no_lease(open_console: Callable[..., Screen], running: Running) -> None:
+    """Who sent the robot somewhere holds the lease; left open it would stop the mission when he closes the page."""
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "paused", "operator-stop"))
+    screen = open_console()
+    screen.click("#lease-take")
+    screen.waits_for("#lease-chip", "yours")
+    screen.click("#tab-mission")
+    screen.click("[data-op=resume]")
+    screen.waits_for("#lease-chip", "free")
+    screen.close()
+    running.wait_until_nobody_is_there()
+    assert [entry[:2] for entry in running.robot.did] == [("mission", "resume")]
+
+
 def test_with_people_known_by_tokens_the_page_asks_for_one(browser: Any) -> None:
     world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
     one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")), whole("sesame"))

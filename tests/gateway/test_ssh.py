@@ -192,6 +192,7 @@ def test_who_drives_by_ssh_is_told_by_his_name(door: Door) -> None:
     finally:
         client.kill()
         client.wait()
+        until(lambda: door.say(HOST, "status").stdout.endswith("nobody drives\n"))
 
 
 def free_port() -> int:
