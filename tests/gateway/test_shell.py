@@ -232,7 +232,8 @@ def test_run_gives_inputs_and_files_and_can_let_go(running: Running, tmp_path: P
     assert code == 1 and f"{file}:2:" in text
 
 
-def test_ctrl_c_stops_the_robot_within_a_tenth_of_a_second(running: Running) -> None:
+def test_ctrl_c_stops_the_robot_then_the_command_ends(running: Running) -> None:
+    """How soon: `pluto bench console`."""
     begun, stopped = threading.Event(), threading.Event()
 
     def run_node(*_: object) -> str:
@@ -245,7 +246,7 @@ def test_ctrl_c_stops_the_robot_within_a_tenth_of_a_second(running: Running) -> 
     shell = subprocess.Popen([sys.executable, "-m", "pluto_bt", "shell", str(running.address), "goto", "3", "4"], stdout=subprocess.PIPE, text=True)
     assert begun.wait(20.0)
     shell.send_signal(signal.SIGINT)
-    assert stopped.wait(0.1 + 0.4), "0.1 s, and patience with a busy machine"
+    assert stopped.wait(20.0)
     assert shell.wait(10.0) == 130 and "stopped" in shell.communicate()[0]
 
 
