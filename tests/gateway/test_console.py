@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -240,6 +241,39 @@ def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Sc
     screen.waits_for("#verdict", "Unknown")
     screen.waits_for("#link", "ms")
     screen.page.wait_for_selector("#no-link", state="hidden")
+
+
+def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.waits_for("#verdict", "Standing")
+    pid = running.link.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        screen.waits_for("#link", "silent")
+        screen.waits_for("#verdict", "Unknown")
+        screen.waits_for("#no-link", "No link")
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    screen.waits_for("#link", "ms")
+    screen.waits_for("#verdict", "Standing")
+
+
+def test_a_robot_that_hangs_is_told_though_the_link_stands(browser: Any) -> None:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")))
+    hangs = threading.Event()
+    one.on_step = lambda: hangs.wait() and None
+    one.pump()
+    try:
+        screen = Screen(browser, one.url)
+        screen.waits_for("#link", "ms")
+        screen.waits_for("#causes", "The robot has not answered for")
+        assert screen.text("#verdict") == "Unknown"
+        screen.close()
+    finally:
+        hangs.set()
+        one.end()
 
 
 def test_a_robot_that_ends_says_so_before(browser: Any) -> None:
