@@ -132,7 +132,7 @@ def _of_ticks(box: Box, now: Now, t_s: float) -> list[bytes]:
     ]
     age_s = t_s - now.tick.t_s
     lines = [_value("tree", TreeState(now.tick.t_s, now.tick.step, tuple(rows)), now.number, age_s)]
-    mission = next((now.trees[run] for run, tree in box.trees.items() if tree.role == "mission" and run in now.trees), None)
+    mission = now.mission
     if mission is not None:
         state = "paused" if now.paused and mission.state == "running" else mission.state
         told = MissionState(now.tick.t_s, mission.tree.name, mission.tree.run, state, now.paused or mission.reason)

@@ -185,7 +185,7 @@ def make_runner(
     if ssh is not None and gateway_access is not None:
         token = secrets.token_hex(16)
         ssh = ssh._replace(token=token if gateway_access.keys else "", certificate=gateway_access.certificate)
-        gateway_access = gateway_access.with_token("ssh", token) if gateway_access.keys else gateway_access
+        gateway_access = gateway_access.with_token("", token) if gateway_access.keys else gateway_access
     options = Options(
         world=inputs.world, robot=inputs.robot, params_path=inputs.params, map=inputs.map, start=inputs.start, seed=inputs.seed,
         max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,

@@ -98,10 +98,10 @@ def _stops(live: Live) -> Iterator[BenchRow]:
     try:
         with live.client(name="passer") as passer, live.client(name="operator") as operator:
             while len(delays_ms) < TRIALS:
-                _drive_on(operator)
+                drive_on(operator)
                 stopped_ns = wall_ns()
                 passer.request("stop")
-                zero_ns = _stood_ns(live, stopped_ns)
+                zero_ns = stood_ns(live, stopped_ns)
                 delays_ms.append((zero_ns - stopped_ns) / 1e6)
     finally:
         flood.kill()
@@ -112,7 +112,7 @@ def _stops(live: Live) -> Iterator[BenchRow]:
     yield BenchRow("<stop/> during a flood to a command of zero, worst", float(worst), "ms", "<= 100")
 
 
-def _drive_on(operator: Client) -> None:
+def drive_on(operator: Client) -> None:
     """The mission goes on, and the robot moves."""
     if operator.request("mission", op="state").get("state") == "paused":
         operator.request("mission", op="resume")
@@ -125,7 +125,7 @@ def _drive_on(operator: Client) -> None:
     raise TimeoutError("the robot does not move")
 
 
-def _stood_ns(live: Live, after_ns: int) -> int:
+def stood_ns(live: Live, after_ns: int) -> int:
     """When the base was told to stand, after that moment."""
     pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
     while wall_ns() < until_ns:

@@ -26,6 +26,7 @@ BENCHES = {
     "resume": "kill -9 at every tick of a mission, then go on",
     "fanout": "one value to 1000 clients of the gateway, against plain uvloop writes and foxglove-sdk",
     "gateway": "requests a second, parsing and encoding against lxml, what clients and a killed gateway cost the robot",
+    "console": "STOP in a browser, `ssh ROBOT stop` and Ctrl-C to a command of zero; what logins by ssh cost the robot",
     "attacks": "what clients who mean harm cost the others, and how fast a stop is meanwhile",
     "memory": "memory of an hour's simulated run",
 }

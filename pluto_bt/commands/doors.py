@@ -6,7 +6,6 @@ Each that cannot be opened is refused before anything is loaded.
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -121,8 +120,8 @@ def _read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest 
             what, mend = "--ssh-keys goes with --ssh", "add --ssh HOST:PORT, or drop --ssh-keys"
             faults.error(Place(f"--ssh-keys {keys}"), "bad-option", what, expected="--ssh", found="--ssh-keys alone", mend=mend)
         return None
-    from pluto_bt.gateway.listen import parse_address
-    from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest, open_ssh_listener
+    from pluto_bt.gateway.listen import open_listener, parse_address
+    from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest
 
     if not need("shell", "--ssh", faults):
         return None
@@ -131,9 +130,9 @@ def _read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest 
     path = default_keys() if keys is None else Path(keys).expanduser()
     check_keys(path, faults)
     try:
-        address = parse_address(text if ":" in text or text.isdigit() else f"{text}:{DEFAULT_PORT}")
-        open_ssh_listener(address).close()
+        address = parse_address(text, "--ssh", DEFAULT_PORT)
+        open_listener(address, option="--ssh").close()
     except InputError as error:
-        faults.extend(replace(fault, file="--ssh") for fault in error.faults)
+        faults.extend(error.faults)
         return None
     return SshRequest(address, path.absolute())

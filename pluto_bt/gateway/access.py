@@ -51,7 +51,7 @@ class Access(msgspec.Struct, frozen=True):
     client_authority: str = ""
 
     def with_token(self, name: str, token: str) -> Access:
-        """The same, with one more who may do everything: a door of ours that looks after its own people."""
+        """The same, with one more who may do everything: a door of ours that looks after its own people; with the name "" it says who comes."""
         key = Key(name, hashlib.sha256(token.encode()).hexdigest(), "", SCOPES)
         return msgspec.structs.replace(self, keys=(*self.keys, key))
 

@@ -58,6 +58,13 @@ class Ask:
         self.error = error
         self.on_change(self)
 
+    def when_over(self, call: Callable[[Ask], None]) -> None:
+        """Call this once it is over, at once if it is."""
+        if self.is_over:
+            call(self)
+        else:
+            self.on_change = call
+
     def answer(self) -> Element:
         """The reply. Raises: GatewayError."""
         if self.error is not None:

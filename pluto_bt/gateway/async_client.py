@@ -4,71 +4,62 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import math
 import ssl
 from collections import deque
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from types import TracebackType
 from typing import Self
 from xml.etree.ElementTree import Element
 
 from pluto_bt.gateway.ask import Ask
-from pluto_bt.gateway.async_line import Ear, changes
-from pluto_bt.gateway.backoff import AGAIN, STEADY_S, Backoff
+from pluto_bt.gateway.async_keeper import AsyncKeeper, Wait
+from pluto_bt.gateway.backoff import AGAIN, Backoff
 from pluto_bt.gateway.client import new_ids
-from pluto_bt.gateway.dialogue import Dialogue
-from pluto_bt.gateway.errors import GatewayError, NoAnswerError, NoConnectionError
+from pluto_bt.gateway.dialogue import KEPT, RENEWALS, Dialogue
+from pluto_bt.gateway.errors import GatewayError, NoAnswerError, NoConnectionError, error_in
 from pluto_bt.gateway.words import OnProgress, RunResult, command_body, hello_of, no_progress, result_of, tell_progress
 from pluto_bt.gateway.xml_text import Attribute
-
-Wait = Callable[[float], Awaitable[None]]
 
 
 class AsyncClient:
     """One client of one gateway, over as many connections as it takes: `async with AsyncClient() as client: …`.
 
-    Calls may be made at the same time from several tasks. What answers no request (values, events) is read by `receive` or `messages`.
+    Calls may be made at the same time from several tasks. What answers no request (values, events) is read by `receive` or `messages`, or
+    apart from all else by `stream`.
     """
 
     def __init__(
         self, host: str = "127.0.0.1", port: int = 7500, *, name: str = "", session: str = "", token: str = "",
         tls: ssl.SSLContext | None = None, timeout_s: float = 5.0, backoff: Backoff | None = AGAIN, wait: Wait = asyncio.sleep,
     ) -> None:  # fmt: skip
-        """The arguments are those of `Client`; the connection is made by `async with`."""
+        """The arguments are those of `Client`; the connection is made by `async with`, or by `open`."""
         self.timeout_s = timeout_s
-        self._address, self._tls, self._backoff, self._wait = (host, port), tls, backoff, wait
         self._has_hello = bool(name or session or token)
         self.dialogue = Dialogue(hello_of(name, session, token), timeout_s, new_ids(session))
-        self._wire: asyncio.Transport | None = None
-        self._attempt, self._opened_s = 0, 0.0
-        self._heard = asyncio.Event()
-        self._timer: asyncio.TimerHandle | None = None
-        self._coming_back: asyncio.Task[None] | None = None
+        self._keeper = AsyncKeeper(self.dialogue, host, port, tls, backoff, wait)
 
     async def __aenter__(self) -> Self:
-        """Connect and say hello. Raises: GatewayError."""
-        self._loop = asyncio.get_running_loop()
-        await self._open()
-        until_s = self._loop.time() + self.timeout_s
-        if self._has_hello and not await self._until(lambda: self.dialogue.welcome is not None, until_s):
-            await self.close()
-            raise self.dialogue.reason(NoAnswerError("no-answer", f"{self._place} did not answer <hello> within {self.timeout_s:g} s"))
-        return self
+        return await self.open()
 
     async def __aexit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         await self.close()
 
+    async def open(self) -> Self:
+        """Connect and say hello. Raises: GatewayError."""
+        try:
+            await self._keeper.open()
+            until_s = self._keeper.clock() + self.timeout_s
+            if self._has_hello and not await self._keeper.until(lambda: self.dialogue.welcome is not None, until_s):
+                raise self.dialogue.reason(NoAnswerError("no-answer", f"{self._keeper.place} did not answer <hello> within {self.timeout_s:g} s"))
+        except BaseException:
+            await self.close()
+            raise
+        return self
+
     async def close(self) -> None:
         """Let go; a lease ends by it."""
         self.dialogue.end(NoConnectionError("no-connection", "the client was closed"))
-        if self._timer is not None:
-            self._timer.cancel()
-        if self._coming_back is not None:
-            self._coming_back.cancel()
-        wire, self._wire = self._wire, None
-        if wire is not None:
-            wire.close()
-        self._heard.set()
+        self._keeper.hang_up()
 
     @property
     def pending(self) -> deque[Element]:
@@ -78,14 +69,21 @@ class AsyncClient:
     @property
     def is_connected(self) -> bool:
         """A connection stands, as far as we know."""
-        return self._wire is not None
+        return self._keeper.wire is not None
 
     # asking ------------------------------------------------------------------------------------------------------
     async def request(self, tag: str, body: str = "", /, **attributes: Attribute) -> Element:
         """Say something and wait for the answer. Raises: GatewayError if it is an error, or does not come in time."""
         one = self._ask(tag, body, attributes)
-        await changes(one, lambda: one.is_over)
+        try:
+            await _changes(one, lambda: one.is_over)
+        finally:
+            self.dialogue.forget(one)
         return one.answer()
+
+    def tell(self, tag: str, body: str = "", /, **attributes: Attribute) -> None:
+        """Say something whose answer is of no interest; harmless if nobody hears it."""
+        self._ask(tag, body, attributes)
 
     async def subscribe(self, topic: str, max_rate_hz: float = 0.0, on_change: bool = False) -> str:
         """Values from now on, to be had by `receive`; the id they carry. A new connection has the same subscriptions."""
@@ -100,11 +98,11 @@ class AsyncClient:
         return await self.request("lease", op=op, **attributes)
 
     @contextlib.asynccontextmanager
-    async def driving(self, ttl_s: float = 3.0, on_loss: str = "stop", op: str = "acquire") -> AsyncIterator[None]:
-        """Hold the lease inside; it is renewed as long as the event loop is alive."""
+    async def driving(self, ttl_s: float = 3.0, on_loss: str = "stop", op: str = "acquire", renew_s: float = 0.0) -> AsyncIterator[None]:
+        """Hold the lease inside; it is renewed each `renew_s` (0 = thrice in `ttl_s`) as long as the event loop is alive."""
         await self.lease(op, ttl_s=ttl_s, on_loss=on_loss)
-        self.dialogue.keep_lease(ttl_s, self._loop.time())
-        self._arm()
+        self.dialogue.keep_lease(renew_s or ttl_s / RENEWALS, self._keeper.clock())
+        self._keeper.turn()
         try:
             yield
         finally:
@@ -124,13 +122,13 @@ class AsyncClient:
         one = self._ask("run", "", {"node": node, "deadline_s": deadline_s, **ports}, is_run=True)
         try:
             while not one.is_over:
-                await changes(one, lambda: bool(one.is_over or one.told))
+                await _changes(one, lambda: bool(one.is_over or one.told))
                 while one.told:
                     tell_progress(one.told.popleft(), on_progress)
         except GatewayError:
             raise
         except BaseException:
-            self._ask("stop", "", {})  # said, not waited for: the task may be cancelled for good
+            self.tell("stop")  # not waited for: the task may be cancelled for good
             raise
         return result_of(one.answer())
 
@@ -140,104 +138,71 @@ class AsyncClient:
 
         Raises: GatewayError if the conversation is over, or there is no connection when the time is.
         """
-        until_s = self._loop.time() + (self.timeout_s if timeout_s is None else timeout_s)
-        if await self._until(lambda: bool(self.pending), until_s):
+        until_s = self._keeper.clock() + (self.timeout_s if timeout_s is None else timeout_s)
+        if await self._keeper.until(lambda: bool(self.pending), until_s):
             return self.pending.popleft()
-        if self._wire is None:
-            raise NoConnectionError("no-connection", f"no connection to {self._place}, and no other came in time")
+        if not self.is_connected:
+            raise NoConnectionError("no-connection", f"no connection to {self._keeper.place}, and no other came in time")
         return None
 
     async def messages(self) -> AsyncIterator[Element]:
         """Everything that answers no request, over all connections, until the conversation is over. Raises: its final GatewayError."""
         while True:
-            await self._until(lambda: bool(self.pending), math.inf)
+            await self._keeper.until(lambda: bool(self.pending))
             yield self.pending.popleft()
 
-    # the line ----------------------------------------------------------------------------------------------------
+    @contextlib.asynccontextmanager
+    async def stream(self, tag: str, body: str = "", /, **attributes: Attribute) -> AsyncIterator[Stream]:
+        """What follows the answer to this request, apart from all else: the values of a `subscribe`, as long as the `async with` goes on and
+        over all connections; the events of a `log`. One stream a topic. Raises: GatewayError.
+        """
+        one = self._ask(tag, body, attributes)
+        streams, id = self.dialogue.streams, one.id
+        streams[id] = deque(maxlen=KEPT)
+        try:
+            await _changes(one, lambda: one.is_over)
+            one.answer()
+            yield Stream(streams[id], self._keeper)
+        finally:
+            if tag == "subscribe":  # what was on its way meanwhile is not for the inbox
+                self._ask("unsubscribe", "", {"topic": attributes["topic"]}).when_over(lambda ask: streams.__delitem__(id))
+            else:
+                del streams[id]
+
     def _ask(self, tag: str, body: str, attributes: dict[str, Attribute], *, is_run: bool = False) -> Ask:
-        one = self.dialogue.ask(tag, body, attributes, self._loop.time(), is_run=is_run)
-        self._turn()
+        one = self.dialogue.ask(tag, body, attributes, self._keeper.clock(), is_run=is_run)
+        self._keeper.turn()
         return one
 
-    async def _until(self, is_over: Callable[[], bool], until_s: float) -> bool:
-        """Wait for what the line brings; False if the time is over. Raises: the final error of the conversation."""
-        while not is_over():
-            if self.dialogue.final is not None:
-                raise self.dialogue.final
-            left_s = until_s - self._loop.time()
-            if left_s <= 0.0:
-                return False
-            self._heard.clear()
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._heard.wait(), None if left_s == math.inf else left_s)
-        return True
 
-    def _turn(self) -> None:
-        """After everything that may have changed something: send, look whether it is over, set the timer, wake who waits."""
-        dialogue, wire = self.dialogue, self._wire
-        if wire is not None:
-            if out := dialogue.to_send():
-                wire.write(out)
-            if dialogue.is_dead:
-                wire.abort()
-            elif dialogue.final is not None:
-                wire.close()
-        self._arm()
-        self._heard.set()
+class Stream:
+    """Messages that follow the answer to one request, oldest first; a loop over it ends with the conversation, by its final GatewayError.
 
-    def _arm(self) -> None:
-        if self._timer is not None:
-            self._timer.cancel()
-        due_s = self.dialogue.due_s
-        self._timer = None if due_s == math.inf or self.dialogue.final else self._loop.call_at(due_s, self._tick)
+    Attributes:
+        waiting: those that came and were not read yet.
+    """
 
-    def _tick(self) -> None:
-        self.dialogue.tick(self._loop.time())
-        self._turn()
+    def __init__(self, waiting: deque[Element], keeper: AsyncKeeper) -> None:
+        self.waiting = waiting
+        self._keeper = keeper
 
-    async def _open(self) -> None:
-        """One attempt. Raises: NoConnectionError."""
-        host, port = self._address
-        try:
-            async with asyncio.timeout(self.timeout_s):
-                await self._loop.create_connection(lambda: Ear(self), host, port, ssl=self._tls)
-        except OSError as error:  # TimeoutError is one
-            text = f"no gateway at {self._place}: {error.strerror or error}; is a run with --gateway going on?"
-            raise NoConnectionError("no-connection", text) from None
+    async def next(self) -> Element:
+        """The next message. Raises: GatewayError if it is an error, or the conversation is over."""
+        await self._keeper.until(lambda: bool(self.waiting))
+        message = self.waiting.popleft()
+        if message.tag == "error":
+            raise error_in(message)
+        return message
 
-    def opened(self, wire: asyncio.Transport) -> None:
-        """The line says that it stands."""
-        self._wire, self._opened_s = wire, self._loop.time()
-        self.dialogue.opened(self._opened_s)
-        self._turn()
+    async def __aiter__(self) -> AsyncIterator[Element]:
+        while True:
+            yield await self.next()
 
-    def heard(self, data: bytes) -> None:
-        """The line says what it brought."""
-        self.dialogue.feed(data, self._loop.time())
-        self._turn()
 
-    def lost(self, wire: asyncio.Transport, error: Exception | None) -> None:
-        """The line says that it is gone."""
-        if self._wire is not wire:
-            return
-        self._wire = None
-        why = f"the connection is gone ({error})" if error is not None else "the gateway closed the connection"
-        self.dialogue.closed(why)
-        if self._backoff is None:
-            self.dialogue.end(self.dialogue.reason(NoConnectionError("no-connection", why)))
-        elif self.dialogue.final is None:
-            self._coming_back = self._loop.create_task(self._come_back(self._backoff))
-        self._turn()
-
-    async def _come_back(self, backoff: Backoff) -> None:
-        if self._loop.time() - self._opened_s >= STEADY_S:
-            self._attempt = 0
-        while self._wire is None and self.dialogue.final is None:
-            self._attempt += 1
-            await self._wait(backoff.delay_s(self._attempt - 1))
-            with contextlib.suppress(NoConnectionError):
-                await self._open()
-
-    @property
-    def _place(self) -> str:
-        return f"{self._address[0]}:{self._address[1]}"
+async def _changes(one: Ask, is_enough: Callable[[], bool]) -> None:
+    """Wait until enough has been said to the request."""
+    changed = asyncio.Event()
+    one.on_change = lambda ask: changed.set()
+    while not is_enough():
+        changed.clear()
+        await changed.wait()

@@ -17,7 +17,7 @@ from xml.etree import ElementTree
 
 from pluto_bt.gateway.ask import Ask
 from pluto_bt.gateway.backoff import AGAIN, Backoff
-from pluto_bt.gateway.dialogue import Dialogue
+from pluto_bt.gateway.dialogue import RENEWALS, Dialogue
 from pluto_bt.gateway.errors import GatewayError, NoAnswerError, NoConnectionError
 from pluto_bt.gateway.keeper import Keeper, Line, dialer, now_s, wait_s
 from pluto_bt.gateway.words import OnProgress, RunResult, command_body, hello_of, no_progress, result_of, tell_progress
@@ -130,7 +130,7 @@ class Client:
     def driving(self, ttl_s: float = 3.0, on_loss: str = "stop", op: str = "acquire") -> Iterator[None]:
         """Hold the lease inside; it is renewed while calls of this client go on, so let none of your own steps take as long as `ttl_s`."""
         self.lease(op, ttl_s=ttl_s, on_loss=on_loss)
-        self.dialogue.keep_lease(ttl_s, self._keeper.clock())
+        self.dialogue.keep_lease(ttl_s / RENEWALS, self._keeper.clock())
         try:
             yield
         finally:

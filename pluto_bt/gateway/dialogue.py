@@ -19,8 +19,9 @@ from pluto_bt.gateway.xml_text import Attribute, element
 Element = ElementTree.Element
 KEPT = 10_000  # messages that nobody has read; beyond, the oldest are dropped
 QUIET_S = 10.0  # so long without a word, and the line is tried by a ping
+MUTE_S = 20.0  # so long have we said nothing: the gateway takes who is mute for a minute for gone, however well he listens
 LINE_BYTES = 64 << 20  # what answers with longer lines is no gateway
-RENEWALS = 3  # in the time of one lease
+RENEWALS = 3  # in the time of one lease, if nothing else is asked for
 NO_PLACE = "too-many-connections"
 PASSING = frozenset({"slow-consumer", "timeout", NO_PLACE})  # fatal, but a new connection may fare better
 
@@ -30,6 +31,7 @@ class Dialogue:
 
     Attributes:
         inbox: messages that answer no request: values, events, and what follows an `ok`; `dropped` counts those that nobody read in time.
+        streams: by id of a request; what follows its answer goes there instead of the inbox.
         welcome: the gateway's last `<hello>`.
         lease_error: why the lease that was to be kept is not ours any more.
         final: why the conversation is over for good.
@@ -40,6 +42,7 @@ class Dialogue:
         """`hello`: its attributes, "" = not said. `ids`: what all our ids begin with; it must be new for each client of a session."""
         self.timeout_s = timeout_s
         self.inbox: deque[Element] = deque()
+        self.streams: dict[str, deque[Element]] = {}
         self.dropped = 0
         self.welcome: Element | None = None
         self.lease_error: GatewayError | None = None
@@ -55,9 +58,9 @@ class Dialogue:
         self._subscriptions: dict[str, Ask] = {}  # by topic or pattern
         self._given_up: dict[str, None] = {}
         self._said_again: set[str] = set()  # ids of subscriptions that are not answered anew
-        self._heard_s = 0.0
+        self._heard_s = self._said_s = 0.0
         self._is_pinging = False
-        self._ttl_s = 0.0  # of the lease that is kept; 0 = none
+        self._every_s = 0.0  # the lease is renewed; 0 = it is not
         self._renew_s = math.inf
         self._topics: dict[str, str] = {}  # id of a subscribe that is not answered -> its topic
 
@@ -71,6 +74,7 @@ class Dialogue:
             one.fail(self.final or BadRequestError("invalid", f'the id "{id}" is that of another request, which is not answered yet'))
             return one
         self._asks[id] = one
+        self._said_s = now_s
         self._fates[id] = fate(tag, given, "session" in self._hello)
         if tag == "subscribe":
             self._topics[id] = str(given["topic"])
@@ -79,6 +83,11 @@ class Dialogue:
         if self.is_open:
             self._out += one.line
         return one
+
+    def forget(self, one: Ask) -> None:
+        """Nobody waits for its answer any more: it is not said again on another connection."""
+        if one.id in self._asks:
+            self._given_up[self._end(one.id).id] = None
 
     def say(self, data: bytes) -> None:
         """Bytes as they are; what comes back is for the inbox."""
@@ -90,10 +99,10 @@ class Dialogue:
         self.say((element(tag, given, body) + "\n").encode())
         return str(given["id"])
 
-    def keep_lease(self, ttl_s: float, now_s: float) -> None:
-        """Renew the lease from now on, `RENEWALS` times in each ttl; 0 = no more."""
-        self._ttl_s, self.lease_error = ttl_s, None
-        self._renew_s = now_s + ttl_s / RENEWALS if ttl_s > 0.0 else math.inf
+    def keep_lease(self, every_s: float, now_s: float) -> None:
+        """Renew the lease from now on, so often; 0 = no more."""
+        self._every_s, self.lease_error = every_s, None
+        self._renew_s = now_s + every_s if every_s > 0.0 else math.inf
 
     def to_send(self) -> bytes:
         """What the connection is to carry now."""
@@ -104,7 +113,7 @@ class Dialogue:
     def opened(self, now_s: float) -> None:
         """A connection stands: say who we are, subscribe again, say again what is not answered."""
         self.is_open, self.is_dead, self._is_pinging = True, False, False
-        self._rest, self._out, self._heard_s = b"", bytearray(), now_s
+        self._rest, self._out, self._heard_s, self._said_s = b"", bytearray(), now_s, now_s
         self._given_up.clear()
         self._said_again = {one.id for one in self._subscriptions.values()}
         again = [one.line for one in (*self._subscriptions.values(), *self._asks.values())]
@@ -112,7 +121,7 @@ class Dialogue:
             self.ask("hello", "", {"version": "1.0", **self._hello}, now_s).on_change = self._greeted
         for line in again:
             self._out += line
-        if self._ttl_s:
+        if self._every_s:
             self._renew(now_s)
 
     def closed(self, why: str) -> None:
@@ -184,6 +193,10 @@ class Dialogue:
         one.hear(message)
 
     def _keep(self, message: Element) -> None:
+        stream = self.streams.get(message.get("id", ""))
+        if stream is not None:
+            stream.append(message)
+            return
         self.inbox.append(message)
         if len(self.inbox) > KEPT:
             self.inbox.popleft()
@@ -193,8 +206,12 @@ class Dialogue:
     @property
     def due_s(self) -> float:
         """When `tick` has something to do."""
-        quiet_s = self._heard_s + QUIET_S if self.is_open and not self._is_pinging else math.inf
-        return min(self._renew_s if self.is_open else math.inf, quiet_s, *(one.ends_s for one in self._asks.values()), math.inf)
+        return min(self._renew_s if self.is_open else math.inf, self._ping_s, *(one.ends_s for one in self._asks.values()), math.inf)
+
+    @property
+    def _ping_s(self) -> float:
+        """When one of us has been silent for too long."""
+        return min(self._heard_s + QUIET_S, self._said_s + MUTE_S) if self.is_open and not self._is_pinging else math.inf
 
     def tick(self, now_s: float) -> None:
         """Give up what is overdue, renew the lease, try a silent line."""
@@ -207,12 +224,12 @@ class Dialogue:
                 one.fail(self.reason(NoConnectionError("no-connection", f"no connection to say <{one.tag}> for {self.timeout_s:g} s")))
         if self.is_open and self._renew_s <= now_s:
             self._renew(now_s)
-        if self.is_open and not self._is_pinging and now_s >= self._heard_s + QUIET_S:
+        if now_s >= self._ping_s:
             self._is_pinging = True
             self.ask("ping", "", {}, now_s).on_change = self._pinged
 
     def _renew(self, now_s: float) -> None:
-        self._renew_s = now_s + self._ttl_s / RENEWALS
+        self._renew_s = now_s + self._every_s
         self.ask("lease", "", {"op": "renew"}, now_s).on_change = self._renewed
 
     def _renewed(self, one: Ask) -> None:

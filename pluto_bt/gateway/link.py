@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import socket
-import subprocess
-import sys
 from typing import NamedTuple
 
 from pluto_bt.gateway.access import Access
@@ -14,14 +11,12 @@ from pluto_bt.gateway.courier import Courier
 from pluto_bt.gateway.exchange import Exchange
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.listen import Address, open_listener
+from pluto_bt.gateway.offspring import Offspring
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.wire import Down, Farewell, Scenery
 
 CLIENTS_A_PROCESS = 1 << 32
 BACKLOG_BYTES = 256 * 1024
-BACK_OFF_S = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0)
-STEADY_S = 30.0
-_PROGRAM = "from pluto_bt.gateway.process import main; main()"
 
 
 class Console(NamedTuple):
@@ -55,10 +50,7 @@ class GatewayLink:
         self._listener: socket.socket | None = None
         self._web: socket.socket | None = None
         self._courier: Courier | None = None
-        self._process: subprocess.Popen[bytes] | None = None
-        self._begun_s = 0.0
-        self._died_s: float | None = None
-        self._deaths = 0
+        self._process = Offspring("pluto_bt.gateway.process")
         self.restarts = 0
 
     @property
@@ -74,12 +66,12 @@ class GatewayLink:
     @property
     def is_lost(self) -> bool:
         """True while there is no process."""
-        return self._process is None
+        return self._process.pid is None
 
     @property
     def pid(self) -> int | None:
         """The gateway process."""
-        return self._process.pid if self._process else None
+        return self._process.pid
 
     def listen(self) -> None:
         """Take the ports; harmless if they are ours already. Raises: InputError (for an asked port exit 2, for the default one a warning)."""
@@ -91,7 +83,7 @@ class GatewayLink:
     def start(self, now_s: float) -> None:
         """Listen and spawn the process. Raises: InputError if `listen` was not called before and the port cannot be had."""
         self.listen()
-        if self._process is None:
+        if self.is_lost:
             self._spawn(now_s)
 
     def step(self, now_s: float) -> None:
@@ -99,8 +91,10 @@ class GatewayLink:
         if not self._is_open:
             return
         if self._courier is not None and self._courier.ended:
-            self._bury(now_s)
-        if self._courier is None and self._died_s is not None and now_s >= self._died_s + self._back_off_s():
+            self._process.bury(now_s)
+            self._courier = None
+            self._exchange.gateway_lost()
+        if self._process.is_due(now_s):
             self.restarts += 1
             self._spawn(now_s)
         self._exchange.step(now_s, self._has_room)
@@ -110,18 +104,13 @@ class GatewayLink:
         if not self._is_open:
             return
         self._send(Farewell())
-        if self._process is not None:
-            try:
-                self._process.wait(timeout=1.0)
-            except subprocess.TimeoutExpired:
-                self._process.kill()
-                self._process.wait()
+        self._process.end()
         if self._courier is not None:
             self._courier.close()
         self._exchange.gateway_lost()
         for listener in filter(None, (self._listener, self._web)):
             listener.close()
-        self._listener = self._web = self._courier = self._process = None
+        self._listener = self._web = self._courier = None
 
     @property
     def _is_open(self) -> bool:
@@ -129,33 +118,13 @@ class GatewayLink:
 
     def _spawn(self, now_s: float) -> None:
         ours, theirs = socket.socketpair()
-        # The program's own path goes along, and -P keeps the current folder out of it: a user's folder must not shadow a package.
-        path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
         fds = [-1 if one is None else one.fileno() for one in (theirs, self._listener, self._web)]
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-c", _PROGRAM, *map(str, fds)], pass_fds=[fd for fd in fds if fd >= 0], stdin=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": path},
-        )  # fmt: skip
+        self._process.begin(now_s, [*map(str, fds)], [fd for fd in fds if fd >= 0])
         theirs.close()
-        self._begun_s = now_s
-        self._died_s = None
         scenery = None if self._console is None else self._console.scenery
         welcome = self._exchange.welcome(self._access, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS, scenery)
         self._courier = Courier(ours, self._exchange.receive)
         self._courier.send(welcome)
-
-    def _bury(self, now_s: float) -> None:
-        """The process is gone, or is of no use: end it and note when."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
-        self._courier = self._process = None
-        self._exchange.gateway_lost()
-        self._deaths = self._deaths + 1 if now_s - self._begun_s < STEADY_S else 1
-        self._died_s = now_s
-
-    def _back_off_s(self) -> float:
-        return BACK_OFF_S[min(self._deaths, len(BACK_OFF_S)) - 1]
 
     def _has_room(self) -> bool:
         courier = self._courier

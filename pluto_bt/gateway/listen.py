@@ -13,7 +13,8 @@ DEFAULT_PORT = 7500
 WEB_PORT = 7580
 BACKLOG = 128
 """Callers who wait to be let in. Whoever calls, shouts and hangs up again and again fills it, and every caller behind him waits for all of that."""
-WHAT = {"--gateway": "the gateway", "--web": "the web console"}
+GUARDED = {"--gateway": "the gateway", "--web": "the web console"}
+"""Options whose address must be the loopback, unless `access` asks everybody who he is; ssh asks by itself."""
 
 
 class Address(NamedTuple):
@@ -40,16 +41,16 @@ def parse_address(text: str, option: str = "--gateway", default_port: int = DEFA
 def open_listener(address: Address, access: Access | None = None, option: str = "--gateway") -> socket.socket:
     """A listening socket. Raises: InputError, told at `option`, if the address does not exist or is in use, or is not the loopback and
     `access` lets anybody in."""
-    place, what = Place(file=option), WHAT[option]
+    place = Place(file=option)
     try:
         family, _, _, _, target = socket.getaddrinfo(address.host, address.port, type=socket.SOCK_STREAM)[0]
     except OSError as error:
         fail(place, "bad-address", f'unknown host "{address.host}"', found=str(error), mend="give 127.0.0.1, or an address of this machine")
-    is_safe = access is not None and bool(access.keys and access.certificate)
+    is_safe = option not in GUARDED or (access is not None and bool(access.keys and access.certificate))
     if not is_safe and not ipaddress.ip_address(str(target[0]).split("%")[0]).is_loopback:
         expected = "a loopback address, or --gateway-tls CERT.pem,KEY.pem and --gateway-tokens FILE.toml"
         mend = f"give both, or listen on 127.0.0.1:{address.port} and come through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
-        fail(place, "not-loopback", f"{what} does not listen on {address} without TLS and tokens", expected=expected, mend=mend)
+        fail(place, "not-loopback", f"{GUARDED[option]} does not listen on {address} without TLS and tokens", expected=expected, mend=mend)
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)

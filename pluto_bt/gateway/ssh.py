@@ -14,9 +14,11 @@ import socket
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 
 import asyncssh
 
+from pluto_bt.gateway.key_ring import KeyRing, shown_name
 from pluto_bt.gateway.listen import Address, parse_address
 from pluto_bt.gateway.ssh_visit import Visit
 
@@ -32,7 +34,7 @@ class House:
     """What all connections share, and how many there are."""
 
     gateway: Address
-    keys: str
+    keys: Path
     logins: int = 0
     visits: int = 0
 
@@ -43,6 +45,8 @@ class Door(asyncssh.SSHServer):
     def __init__(self, house: House) -> None:
         self._house = house
         self._connection: asyncssh.SSHServerConnection
+        self._keys: KeyRing | None = None
+        self._name = ""
         self._is_in = False
 
     def connection_made(self, conn: asyncssh.SSHServerConnection) -> None:
@@ -54,8 +58,10 @@ class Door(asyncssh.SSHServer):
 
     def begin_auth(self, username: str) -> bool:
         """The keys are read anew, so that one that was taken out opens no more; the user's name is only a name."""
+        self._name = username
         with suppress(OSError, ValueError):
-            self._connection.set_authorized_keys(self._house.keys)
+            self._keys = KeyRing(self._house.keys)
+            self._connection.set_authorized_keys(self._keys)
         return True
 
     def public_key_auth_supported(self) -> bool:
@@ -63,8 +69,9 @@ class Door(asyncssh.SSHServer):
         return True
 
     def auth_completed(self) -> None:
-        """In."""
+        """In; known by his key, whose comment the robot's owner has vouched for, and only without one by the name that he gives himself."""
         self._is_in = True
+        self._name = (self._keys.owner if self._keys is not None else "") or shown_name(self._name)
         self._house.logins -= 1
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -77,7 +84,7 @@ class Door(asyncssh.SSHServer):
         if self._house.visits >= VISITS:
             return False
         self._house.visits += 1
-        return Visit(self._house.gateway, self._leave)
+        return Visit(self._house.gateway, self._name, self._leave)
 
     def _leave(self) -> None:
         self._house.visits -= 1
@@ -104,7 +111,7 @@ def main() -> None:
     logging.getLogger("asyncssh").setLevel(logging.CRITICAL)  # who cannot get in is told so himself
     listener, leash = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])
     gateway, keys, host_key = sys.argv[3:6]
-    asyncio.run(serve(listener, leash, House(parse_address(gateway), keys), host_key))
+    asyncio.run(serve(listener, leash, House(parse_address(gateway), Path(keys)), host_key))
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from pluto_bt.gateway.shell.codes import FAILED, USAGE, UsageError
 from pluto_bt.gateway.shell.face import PlainFace
 from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split
-from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.shell.robot import NAME, Robot
 from pluto_bt.gateway.shell.script import play
 from pluto_bt.gateway.ssh_stream import Stream
 
@@ -30,8 +30,8 @@ ROWS, COLUMNS = 24, 80
 class Visit(asyncssh.SSHServerSession[str]):
     """From the request of a session to its end. However it ends, what it drove stops."""
 
-    def __init__(self, gateway: Address, leave: Callable[[], None]) -> None:
-        self._robot = Robot(gateway)
+    def __init__(self, gateway: Address, name: str, leave: Callable[[], None]) -> None:
+        self._robot = Robot(gateway, f"{NAME} {name}")
         self._leave = leave
         self._channel: asyncssh.SSHServerChannel[str]
         self._has_terminal = False
@@ -174,7 +174,7 @@ class Visit(asyncssh.SSHServerSession[str]):
         except Exception as error:  # told to the one who asked, not to the terminal of the run
             self._face.complain(f"internal: {type(error).__name__}: {error}")
         finally:
-            self._robot.close()
+            await self._robot.close()
             with suppress(OSError):
                 self._channel.exit(code)
             self._channel.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import msgspec
 
@@ -18,12 +18,11 @@ from pluto_bt.modules.tick_log import TickLog
 from pluto_bt.runtime.clock import NS
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.trees.contracts import Kept
-from pluto_bt.trees.executive import Activity
+from pluto_bt.trees.executive import RUNNING, Activity
 from pluto_bt.trees.executive import Executive as Core
 
 SHOW_MODULES_EVERY = 10
-WORDS_EVERY_S = 0.5  # so often the words of the nodes are shown, if somebody may look on and there are not too many
-MOST_WORDY_NODES = 500
+WORDS_EVERY_S, WORDS_A_NODE_S = 0.5, 0.001  # so often the words of the nodes are shown, if somebody may look on; of many nodes less often
 
 
 class Executive:
@@ -45,6 +44,7 @@ class Executive:
         self._jobs = JobRunner(context, self.core, context.system.robot, context.system.options.load)
         self._shown: MissionState | None = None
         self._shown_statuses = ""
+        self._shown_states: list[tuple[int, str]] = []
         self._next_words_s = math.inf
         self._steps = 0
         self._own_clock = context.own_clock
@@ -80,6 +80,7 @@ class Executive:
             if self.on_ticked is not None:
                 self.on_ticked(ticked, lines)
             self._guardian.look(ticked, now_s)
+        self._show_turns(now_s)
         if self.keeper is not None:
             self._keep(self.keeper, ticked, lines, now_s)
         if self._log is not None:
@@ -130,10 +131,25 @@ class Executive:
         shown = " ".join(lines)
         if shown != self._shown_statuses or now_s >= self._next_words_s:
             self._shown_statuses = shown
-            nodes = [node for activity in ticked for node in activity.mission.node_states()]
-            is_watched = self._system.options.takes_orders and len(nodes) <= MOST_WORDY_NODES
-            self._next_words_s = now_s + WORDS_EVERY_S if is_watched else math.inf
-            self._tree.put(TreeState(now_s, ticked[0].ticks, tuple(nodes)), now_s)
+            count = self._put_tree(ticked, now_s)
+            is_watched = self._system.options.takes_orders
+            self._next_words_s = now_s + max(WORDS_EVERY_S, WORDS_A_NODE_S * count) if is_watched else math.inf
+
+    def _show_turns(self, now_s: float) -> None:
+        """What is not ticked any more, because it was ended, paused or gave way, is shown as it stands now, not as it ran."""
+        shown = self.core.shown
+        states = [(activity.number, activity.state) for activity in shown]
+        if states != self._shown_states:
+            self._shown_states = states
+            if any(activity.state != RUNNING for activity in shown):
+                self._shown_statuses = ""
+                self._put_tree(shown, now_s)
+
+    def _put_tree(self, activities: Sequence[Activity], now_s: float) -> int:
+        """Publish the nodes of these trees as one; how many there are."""
+        nodes = tuple(node for activity in activities for node in activity.mission.node_states())
+        self._tree.put(TreeState(now_s, activities[0].ticks, nodes), now_s)
+        return len(nodes)
 
     def _record(self, ticked: Activity, statuses: str) -> None:
         sample = self._pose()

@@ -73,7 +73,10 @@ class GatewayPort:
     def stop(self, source: str) -> None:
         """Zero velocity at once; a running mission pauses."""
         self._touch(stop=source)
+        was_free = self._latch.hold(OPERATOR_STOP) is None  # who stops it again and again is told once
         self._system.operator_stop(source)
+        if was_free:
+            self._system.say("warning", OPERATOR_STOP, source, f"{source} stopped the robot")
 
     def estop(self, source: str, reason: str) -> None:
         """As stop, latched until released."""
@@ -157,8 +160,8 @@ class GatewayPort:
         """The tree drawn."""
         from pluto_bt.trees.dump import dump
 
-        active = self._system.executive.core.active
-        return "" if active is None else dump(active.mission, format)
+        shown = self._system.executive.core.shown
+        return dump(shown[0].mission, format) if shown else ""
 
     def why(self, at_s: float | None) -> tuple[bool, Sequence[Cause]]:
         """The chain of causes."""

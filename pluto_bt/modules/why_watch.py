@@ -59,11 +59,12 @@ class WhyWatch:
             self._past.append(Past(now_s, self._view(now_s, copy.deepcopy(self._trail), _leaves(nodes), state)))
 
     def _view(self, now_s: float, trail: Trail, nodes: Sequence[NodeAtWork], state: MissionState | None) -> View:
-        activity = self._context.system.executive.core.mission
+        core = self._context.system.executive.core
+        activity = core.mission
         text = "" if activity is None else activity.text
         is_over = state is not None and state.state in (FAILED, ABORTED)
         ended = (state.state, state.reason, text) if is_over and state is not None else ("", "", "")
-        paused = state.reason if state is not None and state.state == PAUSED else ""
+        paused = state.reason if state is not None and state.state == PAUSED and core.active is activity else ""
         return View(now_s, trail, nodes, "" if state is None else state.name, ended, paused)
 
     def answer(self, at_s: float | None, now_s: float) -> tuple[bool, Sequence[Cause]]:

@@ -21,6 +21,7 @@ from pluto_bt.record.trail import Trail
 from pluto_bt.source import Faults, Place
 
 CHECKPOINT_EVERY = 256  # ticks that are folded anew when one goes back
+ENDS_ERRAND = ("pause", "resume", "abort", "start", "end-errand")
 _ticks = msgspec.json.Decoder(Tick)
 _trees = msgspec.json.Decoder(Tree)
 
@@ -60,6 +61,17 @@ class Now:
     def at_work(self) -> list[TreeNow]:
         """The trees that were ticked last."""
         return [self.trees[run] for run in self.runs if run in self.trees]
+
+    @property
+    def mission(self) -> TreeNow | None:
+        """The mission that began last; None before the first one."""
+        return next((tree for tree in reversed(self.trees.values()) if tree.tree.role == "mission"), None)
+
+    def end_errand(self) -> None:
+        """An order has ended it: what was ticked before it is what people look at again."""
+        left = tuple(run for run in self.runs if run not in self.trees or self.trees[run].tree.role != "errand")
+        if left != self.runs:
+            self.runs = left or ((self.mission.tree.run,) if self.mission is not None else self.runs)
 
 
 class Box:
@@ -109,6 +121,8 @@ class Box:
         state.number, state.tick = state.number + 1, tick
         for verb, _, text in tick.orders:
             state.paused = text if verb == "pause" else "" if verb in ("resume", "start", "abort") else state.paused
+            if verb in ENDS_ERRAND:
+                state.end_errand()
         if tick.trees:
             state.runs = tuple(branch.run for branch in tick.trees)
         for branch in tick.trees:

@@ -102,6 +102,12 @@ class Executive:
         return self.errand if self.errand is not None and not self.errand.is_over else self.mission
 
     @property
+    def shown(self) -> list[Activity]:
+        """What people are shown: what is ticked, or would be if it were not paused or over; without a mission the last errand."""
+        job = self.job if self.job is not None and not self.job.is_over else None
+        return [activity for activity in (self.active or self.errand, job) if activity is not None]
+
+    @property
     def coming_state(self) -> str:
         """The mission's state once all orders that wait are carried out: what a new order has to reckon with."""
         state = IDLE if self.mission is None else self.mission.state

@@ -51,7 +51,8 @@ class Cause(NamedTuple):
 
 @dataclass
 class View:
-    """What is looked at. `ended`: state, reason and text of the mission if it is over; `paused`: the word of a pause."""
+    """What is looked at. `ended`: state, reason and text of the mission if it is over; `paused`: the word of a pause that
+    keeps the robot waiting; not while it runs an errand."""
 
     now_s: float
     trail: Trail

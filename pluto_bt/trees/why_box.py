@@ -24,11 +24,12 @@ def end_s(box: Box) -> float | None:
 def view_of(box: Box, now: Now) -> View:
     """What `why` looks at."""
     trees = now.at_work()
-    mission = next((now.trees[run] for run, tree in box.trees.items() if tree.role == "mission" and run in now.trees), None)
+    mission = now.mission
     over = mission is not None and mission.state != "running"
     ended = (mission.state, mission.reason, mission.text) if over and mission is not None and mission.state != "succeeded" else ("", "", "")
     nodes = [node for tree in trees for node in _at_work(tree)]
-    return View(now.tick.t_s, now.trail, nodes, mission.tree.name if mission is not None else "", ended, now.paused)
+    paused = "" if any(tree.tree.role == "errand" for tree in trees) else now.paused
+    return View(now.tick.t_s, now.trail, nodes, mission.tree.name if mission is not None else "", ended, paused)
 
 
 def _at_work(tree: TreeNow) -> list[NodeAtWork]:

@@ -110,3 +110,12 @@ def burst(request: pytest.FixtureRequest) -> Iterator[Burst]:
     yield made
     if isinstance(made, Uring):
         made.close()
+
+
+@pytest.fixture(scope="module")
+def lasting() -> Iterator[Running]:
+    """One gateway for all tests of a file; `renew` wipes off what one of them leaves on the robot."""
+    running = Running()
+    running.pump()
+    yield running
+    running.end()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import threading
 from collections.abc import Awaitable, Callable
 
 import pytest
@@ -64,6 +65,56 @@ def test_it_outlives_the_gateway_and_goes_on_with_its_run(running: Running) -> N
     talk(running, story, session="anna")
     assert [deed[0] for deed in robot.did] == ["run"]
     assert running.link.restarts == 1
+
+
+def test_streams_are_apart_and_go_on_over_a_killed_gateway(running: Running) -> None:
+    robot = running.robot
+    running.on_step = lambda: [robot.write(topic, m.Pose(robot.time_s)) for topic in ("Localization/Pose", "Localization/Dead-Reckoning")]  # type: ignore[assignment]
+
+    async def story(client: AsyncClient) -> None:
+        robot.says("first")
+        async with client.stream("log", level="info") as log:
+            await client.lease("query")
+            assert [event.text for event in log.waiting] == ["first"]
+        async with client.stream("subscribe", topic="Localization/Pose") as one, client.stream("subscribe", topic="Localization/D*") as other:
+            assert {(await one.next()).get("topic") for _ in range(3)} == {"Localization/Pose"}
+            assert {(await other.next()).get("topic") for _ in range(3)} == {"Localization/Dead-Reckoning"}
+            assert running.link.pid is not None
+            os.kill(running.link.pid, signal.SIGKILL)
+            await asyncio.to_thread(wait_for, lambda: running.link.restarts > 0)
+            one.waiting.clear()
+            assert (await one.next()).get("topic") == "Localization/Pose"
+        with pytest.raises(BadRequestError, match="unknown topic"):
+            async with client.stream("subscribe", topic="Localisation/Pose"):
+                pass
+        await client.request("ping")
+        assert not client.pending and not client.dialogue.streams, "nothing is left of them"
+
+    talk(running, story)
+
+
+def test_a_stop_that_was_given_up_is_not_said_again_later(running: Running) -> None:
+    """The gateway is stopped for a moment: who gave the stop up has long found another way, and may have driven on."""
+
+    async def story(client: AsyncClient) -> None:
+        await client.request("ping")
+        assert running.link.pid is not None
+        os.kill(running.link.pid, signal.SIGSTOP)
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(0.1):
+                await client.stop()
+        os.kill(running.link.pid, signal.SIGKILL)
+        await asyncio.to_thread(wait_for, lambda: running.link.restarts > 0)
+        await client.request("ping")
+        await client.lease("query")
+
+    talk(running, story)
+    assert running.robot.did == []
+
+
+def wait_for(holds: Callable[[], bool]) -> None:
+    while not holds():
+        threading.Event().wait(0.005)
 
 
 def test_a_cancelled_run_stops_the_robot(running: Running) -> None:

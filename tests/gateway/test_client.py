@@ -207,6 +207,15 @@ def test_a_connection_that_is_kept_open_survives_hours_without_a_word(bench: Ben
     assert len(bench.lines) == 1
 
 
+def test_who_only_listens_is_not_taken_for_gone(bench: Bench) -> None:
+    bench.on_step = lambda: bench.robot.write("Localization/Pose", m.Pose(bench.now_s))
+    client = bench.client()
+    client.subscribe("Localization/Pose", max_rate_hz=1.0)
+    while bench.now_s < 150.0:
+        assert client.receive(5.0) is not None
+    assert len(bench.lines) == 1
+
+
 def test_without_a_backoff_the_end_of_the_line_is_the_end(bench: Bench) -> None:
     client = bench.client(backoff=None)
     bench.cut()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -232,13 +235,45 @@ def test_the_emergency_stop_holds_until_it_is_released(open_console: Callable[..
 def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.waits_for("#pose-x", "4.00")
-    process = running.link._process
-    assert process is not None
-    process.kill()
+    assert running.link.pid is not None
+    os.kill(running.link.pid, signal.SIGKILL)
     screen.waits_for("#no-link", "No link", "old")
     screen.waits_for("#verdict", "Unknown")
     screen.waits_for("#link", "ms")
     screen.page.wait_for_selector("#no-link", state="hidden")
+
+
+def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Callable[..., Screen], running: Running) -> None:
+    screen = open_console()
+    screen.waits_for("#verdict", "Standing")
+    pid = running.link.pid
+    assert pid is not None
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        screen.waits_for("#link", "silent")
+        screen.waits_for("#verdict", "Unknown")
+        screen.waits_for("#no-link", "No link")
+    finally:
+        os.kill(pid, signal.SIGCONT)
+    screen.waits_for("#link", "ms")
+    screen.waits_for("#verdict", "Standing")
+
+
+def test_a_robot_that_hangs_is_told_though_the_link_stands(browser: Any) -> None:
+    world = load_world(package_root() / "sim" / "worlds" / "yard.xml")
+    one = Running(Console(Address("127.0.0.1", 0), scenery(world, load_robot_file("atrv2"), "pluto", mode="live")))
+    hangs = threading.Event()
+    one.on_step = lambda: hangs.wait() and None
+    one.pump()
+    try:
+        screen = Screen(browser, one.url)
+        screen.waits_for("#link", "ms")
+        screen.waits_for("#causes", "The robot has not answered for")
+        assert screen.text("#verdict") == "Unknown"
+        screen.close()
+    finally:
+        hangs.set()
+        one.end()
 
 
 def test_a_robot_that_ends_says_so_before(browser: Any) -> None:
@@ -296,6 +331,20 @@ def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Calla
     while len(running.robot.did) < 4:
         screen.page.wait_for_timeout(10)
     assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
+
+
+def test_a_mission_that_goes_on_needs_no_lease(open_console: Callable[..., Screen], running: Running) -> None:
+    """Who sent the robot somewhere holds the lease; left open it would stop the mission when he closes the page."""
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "paused", "operator-stop"))
+    screen = open_console()
+    screen.click("#lease-take")
+    screen.waits_for("#lease-chip", "yours")
+    screen.click("#tab-mission")
+    screen.click("[data-op=resume]")
+    screen.waits_for("#lease-chip", "free")
+    screen.close()
+    running.wait_until_nobody_is_there()
+    assert [entry[:2] for entry in running.robot.did] == [("mission", "resume")]
 
 
 def test_with_people_known_by_tokens_the_page_asks_for_one(browser: Any) -> None:

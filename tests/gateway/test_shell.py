@@ -5,11 +5,12 @@ from __future__ import annotations
 import io
 import itertools
 import json
+import math
 import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -25,15 +26,6 @@ from .conftest import Running
 
 RUNS = itertools.count(1, 2)  # the gateway of all these tests has seen the missions of each
 PORTS = {leaf.__name__: set(leaf.INPUT_PORTS) for leaf in LEAVES}
-
-
-@pytest.fixture(scope="module")
-def lasting() -> Iterator[Running]:
-    """One gateway for all tests of this file: what they leave on the robot is wiped off before the next."""
-    running = Running()
-    running.pump()
-    yield running
-    running.end()
 
 
 @pytest.fixture
@@ -174,6 +166,8 @@ def test_modules_events_and_the_state_of_a_device_are_shown(running: Running) ->
     assert code == 0 and "hello from the mission" in text and "\x1b" not in text and "gotcha" in text
     assert "hello" not in say(running, "events", "warning")[1]
     assert "heading_rad      1.5" in say(running, "compass", "state")[1]
+    running.robot.write("wrist/state", m.ActuatorState(0.0, 0, (0.1 + 0.2, -1.0 / 3.0)))
+    assert "position         0.3 -0.3333333\n" in say(running, "wrist", "state")[1]
     code, text = say(running, "gas", "state")
     assert code == 1 and "nobody writes it in this run, or not yet" in text
 
@@ -238,7 +232,8 @@ def test_run_gives_inputs_and_files_and_can_let_go(running: Running, tmp_path: P
     assert code == 1 and f"{file}:2:" in text
 
 
-def test_ctrl_c_stops_the_robot_within_a_tenth_of_a_second(running: Running) -> None:
+def test_ctrl_c_stops_the_robot_then_the_command_ends(running: Running) -> None:
+    """How soon: `pluto bench console`."""
     begun, stopped = threading.Event(), threading.Event()
 
     def run_node(*_: object) -> str:
@@ -251,7 +246,7 @@ def test_ctrl_c_stops_the_robot_within_a_tenth_of_a_second(running: Running) -> 
     shell = subprocess.Popen([sys.executable, "-m", "pluto_bt", "shell", str(running.address), "goto", "3", "4"], stdout=subprocess.PIPE, text=True)
     assert begun.wait(20.0)
     shell.send_signal(signal.SIGINT)
-    assert stopped.wait(0.1 + 0.4), "0.1 s, and patience with a busy machine"
+    assert stopped.wait(20.0)
     assert shell.wait(10.0) == 130 and "stopped" in shell.communicate()[0]
 
 
@@ -285,7 +280,12 @@ def test_every_row_has_help_and_no_two_of_a_shell_have_one_name(running: Running
 
 def test_values_that_are_no_numbers_survive_as_text(running: Running) -> None:
     running.robot.write("mission/state", m.MissionState(0.0, "a b", 3, "running"))
-    code, text = say(running, "record", "0.1", "-", "mission/state")
+    running.robot.write("drive/status", m.FVectorState(0.0, (math.inf, 0.5), (6,)))
+    running.robot.write("tree", m.TreeState(0.0, 7))
+    code, text = say(running, "record", "0.1", "-", "mission", "drive/status", "tree")
     assert code == 0
-    value: dict[str, Any] = json.loads(text.splitlines()[0])
-    assert (value["name"], value["run"], value["state"]) == ("a b", 3, "running")
+    told = {value["topic"]: value for value in map(json.loads, text.splitlines())}
+    assert (told["drive/status"]["data"], told["drive/status"]["element"]) == ([None, 0.5], [6])
+    assert told["drive/status"]["status"][0]["name"] == "laser-slow-stop" and (told["tree"]["tick"], told["tree"]["node"]) == (7, [])
+    mission: dict[str, Any] = told["mission"]
+    assert (mission["name"], mission["run"], mission["state"]) == ("a b", 3, "running")

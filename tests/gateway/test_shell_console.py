@@ -7,7 +7,7 @@ import contextlib
 import os
 import re
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import pytest
 
@@ -87,14 +87,6 @@ def talk(running: Running, story: Callable[[PipeInput, Screen], object]) -> None
     asyncio.run(play())
 
 
-@pytest.fixture(scope="module")
-def lasting() -> Iterator[Running]:
-    running = Running()
-    running.pump()
-    yield running
-    running.end()
-
-
 @pytest.fixture
 def running(lasting: Running) -> Running:
     """Its drive says every step what it does, as a real one."""
@@ -128,7 +120,7 @@ def test_the_bottom_line_is_honest(running: Running) -> None:
     events: list[str] = []
 
     async def watch() -> None:
-        live = Live(running.address, lambda line, level: events.append(line))
+        live = Live(Robot(running.address), lambda line, level: events.append(line))
         assert "NO LINK" in live.line()
         await until(lambda: "m/s" in live.line(), live.line)
         assert "pose unknown" in live.line() and "no mission" in live.line()
@@ -143,7 +135,7 @@ def test_the_bottom_line_is_honest(running: Running) -> None:
         await until(lambda: "NO LINK to 127.0.0.1" in live.line() or bool(events), live.line)
         await until(lambda: "NO LINK" not in live.line() and "m/s" in live.line(), live.line)
         assert any("connection lost" in event for event in events)
-        live.close()
+        await live.close()
 
     asyncio.run(watch())
 

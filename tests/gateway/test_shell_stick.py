@@ -105,4 +105,6 @@ def test_tab_offers_what_fits(typed: str, offered: list[str]) -> None:
 def test_tab_offers_the_rows_of_the_sub_shell_that_is_open() -> None:
     completer = TableCompleter(dict)
     completer.shell = "wrist"
-    assert "point" in [completion.text for completion in completer.get_completions(Document(""), CompleteEvent())]
+    offered = [completion.text for completion in completer.get_completions(Document(""), CompleteEvent())]
+    assert offered[:4] == ["state", "start", "point", "home"], "its own commands come first"
+    assert len(offered) == len(set(offered))

@@ -39,7 +39,7 @@ class Door:
 
     def __init__(self, folder: Path) -> None:
         for name in ("mine", "strange"):
-            subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / name], check=True)
+            subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-C", "", "-f", folder / name], check=True)
         self.folder = folder
         self.keys = folder / "operators"
         shutil.copy(folder / "mine.pub", self.keys)
@@ -161,6 +161,38 @@ def test_a_key_that_is_taken_out_opens_no_more(door: Door) -> None:
     finally:
         door.keys.write_text(held)
     assert door.say("-o", "BatchMode=yes", HOST, "stop").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("{key} anna@desk", "shell anna@desk"),
+        ('from="127.0.0.1",environment="A={key} b" {key}  Anna\x1b[2J  Meier', "shell Anna [2J Meier"),
+        ("{key}", "shell robot"),
+        ("# {key} nobody\n{key} anna", "shell anna"),
+    ],
+)
+def test_who_comes_is_known_by_the_comment_of_his_key(door: Door, line: str, name: str) -> None:
+    held = door.keys.read_text()
+    try:
+        door.keys.write_text(line.format(key=" ".join(held.split()[:2])) + "\n")
+        assert door.say(HOST, "stop").returncode == 0
+    finally:
+        door.keys.write_text(held)
+    assert door.running.robot.did == [("stop", name)]
+
+
+def test_who_drives_by_ssh_is_told_by_his_name(door: Door) -> None:
+    client = door.begin(HOST, "goto", "3", "4")
+    try:
+        until(has_run(door))
+        assert door.say(HOST, "status").stdout.endswith("shell robot drives\n")
+        refused = door.say(HOST, "goto", "5", "6")
+        assert refused.returncode == 1 and "the lease is held by shell robot" in refused.stderr
+    finally:
+        client.kill()
+        client.wait()
+        until(lambda: door.say(HOST, "status").stdout.endswith("nobody drives\n"))
 
 
 def free_port() -> int:

@@ -14,7 +14,10 @@ from pluto_bt import gateway
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.gateway.local import LocalClient, LocalGateway
 from pluto_bt.modules.gateway_port import GatewayPort
+from pluto_bt.record.box import open_box
 from pluto_bt.runner import make_runner
+from pluto_bt.source import Faults
+from pluto_bt.trees.why_box import why_at
 
 SCHEMA = etree.XMLSchema(etree.parse(str(Path(gateway.__file__).with_name("protocol.xsd"))))
 HALL = '<world name="hall"><wall>-6,-6 30,-6 30,6 -6,6 -6,-6</wall><robot platform="pioneer" x="0" y="0" theta_deg="0"/></world>'
@@ -26,12 +29,12 @@ BAD = '<root BTCPP_format="4"><BehaviorTree ID="a"><Goto/></BehaviorTree>\n<Beha
 class Talk:
     """One run in which a client says things at times of the run; all that he hears is held against the schema."""
 
-    def __init__(self, folder: Path, says: dict[float, str], *, x: float = 8.0, speed: float = 0.5, **options: Any) -> None:
+    def __init__(self, folder: Path, says: dict[float, str], *, x: float = 8.0, speed: float = 0.5, record: str | None = None) -> None:
         (folder / "world.xml").write_text(HALL, encoding="utf-8")
         (folder / "m.xml").write_text(AHEAD.format(x=x, speed=speed), encoding="utf-8")
         self.trace = folder / "trace.jsonl"
-        request = Request(str(folder / "m.xml"), world=str(folder / "world.xml"), **options)
-        self.runner = make_runner(read_inputs(request), max_time_s=60.0, trace_path=self.trace)
+        request = Request(str(folder / "m.xml"), world=str(folder / "world.xml"))
+        self.runner = make_runner(read_inputs(request), max_time_s=60.0, trace_path=self.trace, record=record)
         self.system = self.runner.system
         self.gateway = LocalGateway(GatewayPort(self.system.context))
         self.client: LocalClient = self.gateway.connect()
@@ -121,6 +124,29 @@ def test_a_long_session_validates(tmp_path: Path) -> None:
     codes = [answer.get("code") for answer in talk.heard if answer.tag == "error"]
     assert codes == ["out-of-range", "bad-mission", "read-only", "estopped", "unknown-module", "unknown-param", *["bad-mission"] * (len(faults) + 1)]
     assert len({answer.get("topic") for answer in talk.heard if answer.tag == "value"}) > 20
+
+
+def test_what_was_stopped_is_not_shown_as_running(tmp_path: Path) -> None:
+    """An errand beside a paused mission is stopped: tree and why speak of the mission again, live and replayed; and everybody reads who did it."""
+    asks = '<get id="tree{0}" topic="tree"/><why id="why{0}"/>'
+    talk = Talk(tmp_path, {
+        2.0: '<hello name="anna"/><mission op="pause"/><lease op="acquire" ttl_s="60"/>',
+        3.0: '<run node="GoTo" goal="20;0"/>', 6.0: asks.format(1), 7.0: "<stop/><stop/>",
+        9.0: asks.format(2) + '<tree id="drawn" format="ascii"/><log id="log" since="0" level="warning"/>', 9.5: '<mission op="abort"/>',
+    }, record=str(tmp_path / "a.mcap"))  # fmt: skip
+    before, after = ([(node.get("name"), node.get("status")) for node in talk.told(f"tree{i}")[0].iter("node")] for i in (1, 2))
+    assert before == [("GoTo", "RUNNING")] and after == [("ahead", "RUNNING")], "paused, it runs on where it stood"
+    assert "ahead" in talk.told("drawn")[0].text
+    box = open_box(tmp_path / "a.mcap", "a.mcap", Faults())
+    assert box is not None
+    for i, t_s in (1, 6.0), (2, 9.0):
+        causes = [(cause.get("layer"), cause.get("text")) for cause in talk.told(f"why{i}")[0].iter("cause")]
+        replayed = [(cause.layer, cause.text) for cause in why_at(box, t_s).causes]
+        first = [(layer, text.split()[0]) for layer, text in (causes[0], replayed[0])]
+        assert first == [("node", "GoTo::1") if i == 1 else ("operator", "anna")] * 2, "who drives beside a paused mission does not wait for it"
+        assert [text.split()[0] for layer, text in (*causes, *replayed) if layer == "node"] == [("GoTo::1", "ahead")[i - 1]] * 2
+    events = [(event.get("code"), event.get("source"), event.text) for event in talk.told("log") if event.tag == "event"]
+    assert events.count(("operator-stop", "anna", "anna stopped the robot")) == 1
 
 
 HOSTILE = {

@@ -102,6 +102,8 @@ def test_a_recording_is_looked_through_with_a_slider(browser: Any, scenario: Pla
             screen.page.wait_for_function("([x]) => Math.abs(parseFloat(document.querySelector('#pose-x').textContent) - x) < 0.2", arg=[believed[0]])
         screen.waits_for("#tree", "go", "running")
         screen.waits_for("#verdict", "Moving")
+        lines = screen.page.evaluate("window.pluto.map.trail.points.map(([x, y, , isNew]) => isNew)")
+        assert len(lines) > 2 and not any(lines[1:]), "the way so far is one line"
         screen.page.locator("#map").focus()
         screen.page.keyboard.press("ArrowRight")
         screen.waits_for("#clock", "0:03.1")

@@ -94,7 +94,7 @@ def test_a_morning_round_by_ssh(robot: Robot) -> None:
     done = robot.by_ssh(text=MORNING)
     assert (done.returncode, done.stderr) == (0, ""), done.stdout
     assert done.stdout.count("succeeded\n") == 5
-    for line in ("wrist/state  at ", "  pose             3.0 3.2 0.0 0.0 0.0 0.0", "motion stopped", "avoidance released", "motion started",
+    for line in ("wrist/state  at ", "  pose             3 3.2 0 0 0 0", "motion stopped", "avoidance released", "motion started",
                  "avoid.goto_tolerance_m                   0.25 m", "mission Patrol: running"):  # fmt: skip
         assert line in done.stdout, done.stdout
     assert robot.by_ssh("stop").stdout == "stopped\n"

@@ -14,6 +14,8 @@ from typing import IO
 import pytest
 
 from pluto_bt.gateway.client import Client, GatewayError
+from pluto_bt.gateway.errors import WrongStateError
+from pluto_bt.gateway.proxies import DriveProxy
 
 RUN = [sys.executable, "-m", "pluto_bt", "run", "patrol.xml", "--port", "goals=8,3;13.5,3;10.5,8;2,3.5", "--port", "rounds=50",
        "--realtime", "--speed", "4", "--gateway", "127.0.0.1:0", "--json"]  # fmt: skip
@@ -81,6 +83,8 @@ def test_a_client_stops_the_robot_sends_it_on_an_errand_and_lets_the_mission_go_
             client.lease("acquire", ttl_s=60)
             client.request("run", node="MakeTurn", angle_deg="20")
         assert refused.value.code == "wrong-state", "a mission runs"
+        with pytest.raises(WrongStateError, match="a mission is running; pause it first"):
+            DriveProxy(client).set_velocity(0.1, 0.0)
         client.request("stop")
         wait_for_speed(client, lambda speed_mps: speed_mps <= 0.01)
         state = client.request("mission", op="state")

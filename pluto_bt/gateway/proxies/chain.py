@@ -54,7 +54,8 @@ class LinkProxy(Proxy):
         try:
             self.client.command(self.TARGET, int(flags), position, velocity, force=force)
         except WrongStateError as error:
-            if self.ABOVE is None or self._states().get(self.ABOVE[0]) != "running":
+            is_mission = self.client.request("mission", op="state").get("state") == "running"  # then that is what hinders it first
+            if self.ABOVE is None or is_mission or self._states().get(self.ABOVE[0]) != "running":
                 raise
             above, proxy = self.ABOVE
             text = f"{self.TARGET} obeys the module {above} while its thread runs: {proxy}.release_robot() first, start_activity() afterwards"

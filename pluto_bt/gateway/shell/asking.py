@@ -98,12 +98,9 @@ def state_of(*topics: str) -> Act:
 
 async def events(robot: Robot, face: Face, level: str) -> int:
     """The last events."""
-    link = await robot.link()
-    found: list[str] = []
-    with link.ask("log", level=level) as talk:
-        await talk.next()
-        await link.request("lease", op="query")  # the executive answers one after the other: by then all events are here
-        while not talk.heard.empty():
-            found.append(event_line(await talk.next()))
+    client = await robot.client()
+    async with client.stream("log", level=level) as told:
+        await client.lease("query")  # the executive answers one after the other: by then all events are here
+        found = [event_line(event) for event in told.waiting]
     face.say("\n".join(found[-EVENTS_SHOWN:]) or "no events")
     return DONE

@@ -5,14 +5,13 @@ from __future__ import annotations
 import asyncio
 import math
 
+from pluto_bt.gateway.async_client import AsyncClient
 from pluto_bt.gateway.client import Element
 from pluto_bt.gateway.shell.codes import DONE
 from pluto_bt.gateway.shell.driving import driving, side_by_side
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Link
 from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.stick import Real, Stick
-from pluto_bt.gateway.xml_text import numbers
 
 TTL_S = 2.0  # a shell that hangs while a key is held must not drive on
 PERIOD_S = 0.1
@@ -24,8 +23,8 @@ HELP = "arrows drive, space stops, q leaves"
 class _Drive:
     """One spell of driving: the stick, what the drive says, what is shown."""
 
-    def __init__(self, link: Link, max_speed_mps: float) -> None:
-        self._link = link
+    def __init__(self, client: AsyncClient, max_speed_mps: float) -> None:
+        self._client = client
         self._now_s = asyncio.get_running_loop().time
         self._stick = Stick(max_speed_mps)
         self._real: Real | None = None
@@ -34,12 +33,11 @@ class _Drive:
 
     def hear(self, value: Element) -> None:
         """A `drive/status`."""
-        if value.tag == "value":
-            speed, turn, *_ = map(float, (value.findtext("data") or "0 0").split())
-            self._real = Real(speed, turn, self._now_s() - float(value.get("age", "0")))
-            first = value.find("status")
-            name = "" if first is None else first.get("name", "")
-            self._trouble = "" if name in ("normal", "command-timeout") else f"drive: {name}"
+        speed, turn, *_ = map(float, (value.findtext("data") or "0 0").split())
+        self._real = Real(speed, turn, self._now_s() - float(value.get("age", "0")))
+        first = value.find("status")
+        name = "" if first is None else first.get("name", "")
+        self._trouble = "" if name in ("normal", "command-timeout") else f"drive: {name}"
 
     def hit(self, key: str) -> None:
         """A key."""
@@ -52,8 +50,7 @@ class _Drive:
         is_moving = wanted != (0.0, 0.0)
         if is_moving or self._is_moving:
             self._is_moving = is_moving
-            body = f"<velocity>{numbers(wanted)}</velocity>"
-            await self._link.request("command", body, target="motion", flags=VELOCITY_ALL_SENSORS)
+            await self._client.command("motion", VELOCITY_ALL_SENSORS, velocity=wanted)
 
     def shown(self) -> str:
         """The line that the driver sees."""
@@ -68,10 +65,10 @@ class _Drive:
 
 async def drive(robot: Robot, face: Face, max_speed_mps: float) -> int:
     """Drive by the arrow keys until `q`."""
-    async with driving(robot, TTL_S) as link:
-        spell = _Drive(link, max_speed_mps)
+    async with driving(robot, TTL_S) as client:
+        spell = _Drive(client, max_speed_mps)
         async with face.keys(spell.shown) as keys, side_by_side() as group:
-            tasks = [group.create_task(_hear(link, spell)), group.create_task(_command(spell))]
+            tasks = [group.create_task(_hear(client, spell)), group.create_task(_command(spell))]
             async for key in keys:
                 if key == "q":
                     break
@@ -83,14 +80,10 @@ async def drive(robot: Robot, face: Face, max_speed_mps: float) -> int:
     return DONE
 
 
-async def _hear(link: Link, spell: _Drive) -> None:
-    with link.ask("subscribe", topic="drive/status", max_rate_hz=STATUS_HZ) as talk:
-        try:
-            while True:
-                spell.hear(await talk.next(None))
-        finally:
-            if not link.lost.is_set():
-                link.forget(link.ask("unsubscribe", topic="drive/status").id)
+async def _hear(client: AsyncClient, spell: _Drive) -> None:
+    async with client.stream("subscribe", topic="drive/status", max_rate_hz=STATUS_HZ) as values:
+        async for value in values:
+            spell.hear(value)
 
 
 async def _command(spell: _Drive) -> None:

@@ -32,7 +32,7 @@ class TableCompleter(Completer):
         rows = rows_in(shell)
         if not before:
             yield from ((row.name, row.doc) for row in rows.values())
-            yield from ((name, "a module's own commands") for name in SUBSHELLS if shell == self.shell)
+            yield from ((f"{name}>" if name in rows else name, "a module's own commands") for name in SUBSHELLS if shell == self.shell)
             yield from (("help", "this list, or one command of it"), ("quit", "leave"))
         elif before[0] == "help" and len(before) == 1:
             yield from ((name, "") for name in (*rows, *SUBSHELLS))

@@ -35,7 +35,7 @@ class Console:
         self.may_read_files = may_read_files
         self._robot = robot
         self._has_signals = has_signals
-        self._live = Live(robot.address, self._event)
+        self._live = Live(robot, self._event)
         self._completer = TableCompleter(lambda: self._live.names)
         self._busy = BusyScreen(self._live.line, self._stop, lambda: self.say(LEFT), REFRESH_S, has_signals=has_signals)
         self._stops: set[asyncio.Task[int]] = set()
@@ -74,8 +74,8 @@ class Console:
                 if not await self._line(line):
                     return DONE
         finally:
-            self._live.close()
-            self._robot.close()
+            await self._live.close()
+            await self._robot.close()
 
     async def _line(self, line: str) -> bool:
         """Do one line; False if it means to leave."""

@@ -3,48 +3,32 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
-from contextlib import asynccontextmanager, suppress
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
+from contextlib import asynccontextmanager
 from typing import Any
 
-from pluto_bt.gateway.client import Element, GatewayError
+from pluto_bt.gateway.async_client import AsyncClient
 from pluto_bt.gateway.shell.codes import DONE, FAILED, UsageError
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Link
 from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.words import RunResult
 
 TTL_S = 20.0  # of the run, which may be a hundred times as fast as we; a shell that dies is noticed by its connection, not by this
 RENEW_S = 0.1
+NO_PORTS = frozenset({"id", "node", "on_progress"})  # names that a run has for itself
 Act = Callable[..., Awaitable[int]]
 
 
 @asynccontextmanager
-async def driving(robot: Robot, ttl_s: float = TTL_S) -> AsyncIterator[Link]:
+async def driving(robot: Robot, ttl_s: float = TTL_S) -> AsyncIterator[AsyncClient]:
     """Hold the lease inside. Who is cancelled there stops the robot, before anything else. Raises: GatewayError."""
-    link = await robot.link()
-    await link.request("lease", op="acquire", ttl_s=ttl_s, on_loss="stop")
-    renewing = asyncio.create_task(_renew(link))
-    try:
-        yield link
-    except asyncio.CancelledError:
-        tell(link, "stop")
-        raise
-    finally:
-        renewing.cancel()
-        tell(link, "lease", op="release")
-
-
-def tell(link: Link, tag: str, /, **attributes: str) -> None:
-    """Say it without waiting for the answer; harmless if nobody hears it."""
-    with suppress(GatewayError):
-        link.forget(link.ask(tag, **attributes).id)
-
-
-async def _renew(link: Link) -> None:
-    with suppress(GatewayError):  # taken away, or the connection is gone: what is driven ends by itself
-        while True:
-            await asyncio.sleep(RENEW_S)
-            await link.request("lease", op="renew")
+    client = await robot.client()
+    async with client.driving(ttl_s, renew_s=RENEW_S):
+        try:
+            yield client
+        except asyncio.CancelledError:
+            client.tell("stop")
+            raise
 
 
 @asynccontextmanager
@@ -57,25 +41,28 @@ async def side_by_side() -> AsyncIterator[asyncio.TaskGroup]:
         raise errors.exceptions[0] from None
 
 
-async def run_node(robot: Robot, face: Face, node: str, **ports: str) -> int:
+async def run_node(robot: Robot, face: Face, node: str, ports: Mapping[str, Any]) -> int:
     """Run one node to its end and tell how it went."""
-    async with driving(robot) as link:
-        with link.ask("run", node=node, **ports) as talk:
-            message = await talk.next()
-            while message.tag != "result":
-                face.progress(": ".join(filter(None, (message.get("state") or "running", message.get("text")))))
-                message = await talk.next(None)
-    return tell_result(face, message)
+
+    def progress(state: str, text: str) -> None:
+        face.progress(": ".join(filter(None, (state or "running", text))))
+
+    async with driving(robot) as client:
+        result = await client.run(node, on_progress=progress, **ports)
+    return tell_result(face, result)
 
 
 async def navigate(robot: Robot, face: Face, goal: str) -> int:
     """Plan the way to a place and drive it."""
-    return await run_node(robot, face, "NavigateTo", goal=goal.replace(",", ";"))
+    return await run_node(robot, face, "NavigateTo", {"goal": goal.replace(",", ";")})
 
 
 async def do(robot: Robot, face: Face, name: str, settings: tuple[str, ...]) -> int:
     """Any node of the library."""
-    return await run_node(robot, face, name, **inputs(settings))
+    given = inputs(settings)
+    if taken := sorted(given.keys() & NO_PORTS):
+        raise UsageError(f"expected inputs of the node, found {', '.join(taken)}")
+    return await run_node(robot, face, name, given)
 
 
 def inputs(settings: Sequence[str]) -> dict[str, str]:
@@ -86,14 +73,13 @@ def inputs(settings: Sequence[str]) -> dict[str, str]:
     return given
 
 
-def tell_result(face: Face, result: Element) -> int:
+def tell_result(face: Face, result: RunResult) -> int:
     """State, reason and text of a run, and what came out of it."""
-    state = result.get("state", "")
-    face.say(": ".join(word for word in (state, result.get("reason"), result.get("text")) if word))
-    for out in result.iter("out"):
-        if out.get("name") != "reason":
-            face.say(f"  {out.get('name')} = {out.text or ''}")
-    return DONE if state == "succeeded" else FAILED
+    face.say(": ".join(filter(None, (result.state, result.reason, result.text))))
+    for name, value in result.outputs.items():
+        if name != "reason":
+            face.say(f"  {name} = {value}")
+    return DONE if result.is_success else FAILED
 
 
 def plain(value: Any) -> str:
@@ -111,6 +97,6 @@ def node(name: str, *ports: str, **fixed: str) -> Act:
             parts = [left.pop(0) for _ in range(int(count or 1))]
             if parts[0] is not None:
                 given[key] = ";".join(map(plain, parts))
-        return await run_node(robot, face, name, **given)
+        return await run_node(robot, face, name, given)
 
     return act

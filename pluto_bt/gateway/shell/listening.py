@@ -55,20 +55,14 @@ async def _record(robot: Robot, topics: tuple[str, ...], for_s: float, out: Text
 
 async def _listen(robot: Robot, topics: tuple[str, ...], rate_hz: float, for_s: float | None, hear: Callable[[Element], None]) -> None:
     """Give each value of these topics to `hear`, for so long or until cancelled."""
-    link = await robot.link()
+    client = await robot.client()
 
     async def one(topic: str) -> None:
-        with link.ask("subscribe", topic=topic, max_rate_hz=rate_hz) as talk:
-            await talk.next()
-            while True:
-                hear(await talk.next(None))
+        async with client.stream("subscribe", topic=topic, max_rate_hz=rate_hz) as values:
+            async for value in values:
+                hear(value)
 
-    try:
-        with suppress(TimeoutError):
-            async with asyncio.timeout(for_s), side_by_side() as group:
-                for topic in topics:
-                    group.create_task(one(topic))
-    finally:
-        if not link.lost.is_set():
+    with suppress(TimeoutError):
+        async with asyncio.timeout(for_s), side_by_side() as group:
             for topic in topics:
-                link.forget(link.ask("unsubscribe", topic=topic).id)
+                group.create_task(one(topic))

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
 
+from pluto_bt.gateway.async_client import AsyncClient
 from pluto_bt.gateway.client import Element, GatewayError
-from pluto_bt.gateway.listen import Address
-from pluto_bt.gateway.shell.link import Link
+from pluto_bt.gateway.shell.driving import side_by_side
 from pluto_bt.gateway.shell.robot import Robot
 from pluto_bt.gateway.shell.telling import event_line
 from pluto_bt.gateway.subscriptions import ALIASES
 
 OLD_S = 1.0
 HISTORY_S = 10.0
+RETRY_S = 0.5
 SHOWN_HZ = 4.0
 SHOWN = ("Localization/Pose", "drive/status", "mission")
 
@@ -24,31 +24,29 @@ SHOWN = ("Localization/Pose", "drive/status", "mission")
 class Live:
     """Listens to the robot as long as the shell is open, over a connection of its own: what commands subscribe to is another matter."""
 
-    def __init__(self, address: Address, on_event: Callable[[str, str], None]) -> None:
+    def __init__(self, robot: Robot, on_event: Callable[[str, str], None]) -> None:
         """`on_event` is given each event as a line, and its level."""
-        self._robot = Robot(address)
+        self._robot = robot
         self._on_event = on_event
         self._now_s = asyncio.get_running_loop().time
         self._values: dict[str, tuple[Element, float]] = {}  # topic → value, when it was true by our clock
-        self._link: Link | None = None
+        self._is_linked = False
         self._lost_s = self._now_s()
-        self._listening: set[asyncio.Task[None]] = set()
         self.names: dict[str, dict[str, str]] = {}  # by kind (topic, module, mission, param, node, goal, `port NODE`): names with their meanings
-        self._robot.on_open = self._opened
-        self._keeping = asyncio.create_task(self._robot.keep())
+        self._keeping = asyncio.create_task(self._keep())
 
     def line(self) -> str:
         """The bottom line."""
         now_s = self._now_s()
-        if self._link is None or self._link.lost.is_set():
+        if not self._is_linked:
             return f" NO LINK to {self._robot.address} for {now_s - self._lost_s:.0f} s: what the robot does is not known here"
         return " " + "  |  ".join((self._pose(now_s), self._speed(now_s), self._mission()))
 
-    def close(self) -> None:
+    async def close(self) -> None:
         """Listen no more."""
-        for task in (self._keeping, *self._listening):
-            task.cancel()
-        self._robot.close()
+        self._keeping.cancel()
+        with suppress(asyncio.CancelledError):
+            await self._keeping
 
     def _pose(self, now_s: float) -> str:
         value, age = self._newest("Localization/Pose", now_s)
@@ -81,54 +79,51 @@ class Live:
         return value, f"  {age_s:.0f} s OLD" if age_s > OLD_S else ""
 
     # listening ---------------------------------------------------------------------------------------------------
-    def _opened(self, link: Link) -> None:
-        self._link = link
+    async def _keep(self) -> None:
+        """One connection after the other, each begun anew: behind the next one may be another run, or another robot."""
+        while True:
+            with suppress(GatewayError):
+                client = await self._robot.connect()
+                try:
+                    await self._follow(client)
+                except GatewayError as error:
+                    self._on_event(f"connection lost: {error.code}: {error.text}", "error")
+                finally:
+                    self._is_linked, self._lost_s = False, self._now_s()
+                    await client.close()
+            await asyncio.sleep(RETRY_S)
+
+    async def _follow(self, client: AsyncClient) -> None:
+        """Listen until the connection is lost. Raises: GatewayError."""
+        self._is_linked = True
         self._values.clear()
-        for topic in SHOWN:
-            self._start(self._listen(link, topic))
-        self._start(self._hear_events(link))
-        self._start(self._learn(link))
-        self._start(self._mind(link))
+        async with side_by_side() as group:
+            for topic in SHOWN:
+                group.create_task(self._listen(client, topic))
+            group.create_task(self._hear_events(client))
+            with suppress(GatewayError):
+                await self._learn(client)
 
-    def _start(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.create_task(_until_lost(work))
-        self._listening.add(task)
-        task.add_done_callback(self._listening.discard)
+    async def _listen(self, client: AsyncClient, topic: str) -> None:
+        async with client.stream("subscribe", topic=topic, max_rate_hz=SHOWN_HZ) as values:
+            async for value in values:
+                self._values[topic] = (value, self._now_s() - float(value.get("age", "0")))
 
-    async def _listen(self, link: Link, topic: str) -> None:
-        with link.ask("subscribe", topic=topic, max_rate_hz=SHOWN_HZ) as talk:
-            while True:
-                message = await talk.next(None)
-                if message.tag == "value":
-                    self._values[topic] = (message, self._now_s() - float(message.get("age", "0")))
+    async def _hear_events(self, client: AsyncClient) -> None:
+        async with client.stream("subscribe", topic="events") as values:
+            async for value in values:
+                if float(value.get("age", "0")) < HISTORY_S:  # `events` shows the older ones
+                    self._on_event(event_line(value), value.findtext("level") or "")
 
-    async def _hear_events(self, link: Link) -> None:
-        with link.ask("subscribe", topic="events") as talk:
-            while True:
-                message = await talk.next(None)
-                if message.tag == "value" and float(message.get("age", "0")) < HISTORY_S:  # `events` shows the older ones
-                    self._on_event(event_line(message), message.findtext("level") or "")
-
-    async def _learn(self, link: Link) -> None:
-        """What there is, for completion."""
+    async def _learn(self, client: AsyncClient) -> None:
+        """What there is, for completion; a gateway that does not say so soon leaves us with what we know."""
         known: dict[str, dict[str, str]] = {"topic": dict.fromkeys(ALIASES, "")}
-        for item in await link.request("describe"):
+        for item in await client.request("describe"):
             kind, name = item.get("kind", ""), item.get("name", "")
             known.setdefault(kind, {})[name] = item.findtext("doc") or ""
             if kind == "node":
                 inputs = [port for port in item.iter("field") if port.get("direction") != "out"]
                 known[f"port {name}"] = {f"{port.get('name')}=": port.get("doc") or "" for port in inputs}
-        known["module"] = {module.get("name", ""): module.get("state", "") for module in await link.request("modules")}
-        known["mission"] = {mission.get("name", ""): "" for mission in (await link.request("mission", op="list")).iter("mission")}
+        known["module"] = {module.get("name", ""): module.get("state", "") for module in await client.request("modules")}
+        known["mission"] = {mission.get("name", ""): "" for mission in (await client.request("mission", op="list")).iter("mission")}
         self.names = known
-
-    async def _mind(self, link: Link) -> None:
-        """Notice the end of the connection."""
-        await link.lost.wait()
-        self._lost_s = self._now_s()
-        self._on_event(f"connection lost: {link.fault.code}: {link.fault.text}", "error")
-
-
-async def _until_lost(work: Coroutine[Any, Any, None]) -> None:
-    with suppress(GatewayError):
-        await work

@@ -59,7 +59,7 @@ async def _stoppable(robot: Robot, face: Face, work: Coroutine[None, None, int])
     except asyncio.CancelledError:
         return await stopping[0] if stopping else FAILED
     finally:
-        robot.close()
+        await robot.close()
 
 
 async def stop_by_key(robot: Robot, face: Face) -> int:

@@ -72,20 +72,15 @@ async def trip2(robot: Robot, face: Face) -> int:
 
 async def _watch(robot: Robot, face: Face, before: int) -> int:
     """Show the mission that began after run number `before`, until it is over."""
-    link = await robot.link()
-    with link.ask("subscribe", topic="mission") as talk:
-        try:
-            while True:
-                message = await talk.next(None)
-                state = {part.tag: part.text or "" for part in message}
-                if message.tag != "value" or int(state.get("run", "0")) <= before:
-                    continue
-                if state.get("state") in OVER:
-                    face.say(": ".join(filter(None, (state["state"], state.get("reason")))))
-                    return DONE if state["state"] == "succeeded" else FAILED
-                face.progress(f"{state.get('state')} at {state.get('step') or state.get('name')}")
-        finally:
-            link.forget(link.ask("unsubscribe", topic="mission").id)
+    async with (await robot.client()).stream("subscribe", topic="mission") as values:
+        while True:
+            state = {part.tag: part.text or "" for part in await values.next()}
+            if int(state.get("run", "0")) <= before:
+                continue
+            if state.get("state") in OVER:
+                face.say(": ".join(filter(None, (state["state"], state.get("reason")))))
+                return DONE if state["state"] == "succeeded" else FAILED
+            face.progress(f"{state.get('state')} at {state.get('step') or state.get('name')}")
 
 
 def _told(mission: Element) -> str:

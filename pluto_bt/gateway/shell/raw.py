@@ -13,20 +13,12 @@ from contextlib import suppress
 from pluto_bt.gateway.shell.codes import DONE, FAILED
 from pluto_bt.gateway.shell.driving import Act, driving
 from pluto_bt.gateway.shell.face import Face
-from pluto_bt.gateway.shell.link import Link
 from pluto_bt.gateway.shell.robot import Robot
-from pluto_bt.gateway.xml_text import numbers
 
 REPEAT_S = 1.0  # the drive gives up four seconds after the last command
 ALL_SENSORS = {"drive": 10, "avoidance": 30, "motion": 30}  # tens of cmdFlags; the drive knows sonar alone
 MAX_TURN_RADPS = math.radians(45.0)
 RELEASE, REACHED, STUCK = -1, 1, 2
-
-
-async def post(link: Link, target: str, flags: int, **vectors: Sequence[float]) -> None:
-    """One command. Raises: GatewayError."""
-    body = "".join(f"<{name}>{numbers(values)}</{name}>" for name, values in vectors.items())
-    await link.request("command", body, target=target, flags=flags)
 
 
 def velocity(target: str) -> Act:
@@ -53,20 +45,16 @@ def goto(target: str) -> Act:
 
     async def act(robot: Robot, face: Face, x_m: float, y_m: float, speed_mps: float, force: float) -> int:
         vectors = {"position": (x_m, y_m), "velocity": (speed_mps, MAX_TURN_RADPS), "force": (force,)}
-        async with driving(robot) as link:
-            with link.ask("subscribe", topic=f"{target}/status", max_rate_hz=10.0) as talk:
-                await talk.next()
-                await post(link, target, ALL_SENSORS[target] + 2, **vectors)
-                await asyncio.sleep(0.3)  # what still speaks of the command before is over by then
-                while not talk.heard.empty():
-                    await talk.next()
-                while True:
-                    element = [int(word) for word in ((await talk.next()).findtext("element") or "").split()]
-                    face.progress(f"element {' '.join(map(str, element))}")
-                    if len(element) > 1 and element[1] in (REACHED, STUCK):
-                        link.forget(link.ask("unsubscribe", topic=f"{target}/status").id)
-                        face.say("reached" if element[1] == REACHED else "stuck")
-                        return DONE if element[1] == REACHED else FAILED
+        async with driving(robot) as client, client.stream("subscribe", topic=f"{target}/status", max_rate_hz=10.0) as statuses:
+            await client.command(target, ALL_SENSORS[target] + 2, **vectors)
+            await asyncio.sleep(0.3)  # what still speaks of the command before is over by then
+            statuses.waiting.clear()
+            while True:
+                element = [int(word) for word in ((await statuses.next()).findtext("element") or "").split()]
+                face.progress(f"element {' '.join(map(str, element))}")
+                if len(element) > 1 and element[1] in (REACHED, STUCK):
+                    face.say("reached" if element[1] == REACHED else "stuck")
+                    return DONE if element[1] == REACHED else FAILED
 
     return act
 
@@ -84,8 +72,8 @@ def release(target: str) -> Act:
     """cmdFlags −1: the link's thread stops, and who is below it can be commanded."""
 
     async def act(robot: Robot, face: Face) -> int:
-        async with driving(robot) as link:
-            await post(link, target, RELEASE)
+        async with driving(robot) as client:
+            await client.command(target, RELEASE)
         face.say(f"{target} released; `start` starts it again")
         return DONE
 
@@ -94,13 +82,13 @@ def release(target: str) -> Act:
 
 async def _hold(robot: Robot, face: Face, target: str, flags: int, for_s: float, **vectors: Sequence[float]) -> int:
     """Keep a command in force for so long, then come to rest."""
-    async with driving(robot) as link:
+    async with driving(robot) as client:
         with suppress(TimeoutError):
             async with asyncio.timeout(for_s):
                 while True:
-                    await post(link, target, flags, **vectors)
+                    await client.command(target, flags, **vectors)
                     face.progress(f"cmdFlags {flags} to {target}")
                     await asyncio.sleep(REPEAT_S)
-        await post(link, target, ALL_SENSORS[target], velocity=(0.0, 0.0))
+        await client.command(target, ALL_SENSORS[target], velocity=(0.0, 0.0))
     face.say("at rest")
     return DONE

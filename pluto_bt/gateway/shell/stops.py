@@ -27,7 +27,7 @@ async def estop(robot: Robot, face: Face, words: tuple[str, ...]) -> int:
 
 async def release(robot: Robot, face: Face) -> int:
     """Take the emergency stop back; nothing moves by that."""
-    async with driving(robot) as link:
-        await link.request("release", what="estop")
+    async with driving(robot) as client:
+        await client.request("release", what="estop")
     face.say("released; nothing moves until it is commanded")
     return DONE

@@ -66,7 +66,8 @@ SUBSHELLS: tuple[str, ...] = tuple(dict.fromkeys(row.shell for row in MODULE_ROW
 
 def rows_in(shell: str) -> dict[str, Row]:
     """What can be said in a sub-shell: its own rows, and those that hold everywhere; its own win."""
-    return {row.name: row for row in (*GENERAL, *(row for row in MODULE_ROWS if row.shell == shell))}
+    own = {row.name: row for row in MODULE_ROWS if row.shell == shell}
+    return own | {row.name: row for row in GENERAL if row.name not in own}
 
 
 def help_text(shell: str = "") -> str:

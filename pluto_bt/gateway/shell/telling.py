@@ -4,8 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
+from functools import cache
+from typing import Any
 
 from pluto_bt.gateway.client import Element
+from pluto_bt.gateway.subscriptions import ALIASES
+from pluto_bt.gateway.values import fields_of
+from pluto_bt.gateway.wire import TYPES
 
 LONG_LIST = 12  # numbers shown of a longer list
 
@@ -21,27 +27,37 @@ def shown(value: Element) -> str:
     """A value for a person: a line a field, long lists cut; codes with their names."""
     lines = [f"{value.get('topic')}  at {value.get('stamp')} s, age {value.get('age')} s"]
     for part in value:
-        words = (part.text or "").split(" ")
-        text = part.text or " ".join(f"{key}={word}" for key, word in part.attrib.items())
+        words = _short((part.text or "").split(" "))
+        text = " ".join(words) or " ".join(f"{key}={word}" for key, word in part.attrib.items())
         cut = f"{' '.join(words[:LONG_LIST])} … ({len(words)} in all)" if len(words) > LONG_LIST and part.tag != "text" else text
         lines.append(f"  {part.tag:<16} {cut}")
     return "\n".join(lines)
 
 
 def as_json(value: Element) -> str:
-    """A value as one line of JSON: numbers as numbers, lists as lists, rows as objects."""
-    fields: dict[str, object] = {}
+    """A value as one line of JSON, each field as its type has it: a list of one number is a list, what is no finite number is null."""
+    topic = value.get("topic", "")
+    kinds = _kinds(ALIASES.get(topic, topic))
+    fields: dict[str, Any] = {name: [] for name, kind in kinds.items() if kind == "rows"}
     for part in value:
         if part.attrib:
-            rows = fields.setdefault(part.tag, [])
-            assert isinstance(rows, list)
-            rows.append(dict(part.attrib))
+            fields.setdefault(part.tag, []).append(dict(part.attrib))
         else:
-            numbers = [_number(word) for word in (part.text or "").split()]
-            is_numeric = bool(numbers) and None not in numbers
-            fields[part.tag] = (numbers[0] if len(numbers) == 1 else numbers) if is_numeric else part.text or ""
-    head = {"topic": value.get("topic"), "seq": int(value.get("seq", "0")), "stamp_s": float(value.get("stamp", "0"))}
+            fields[part.tag] = _READ[kinds.get(part.tag, "str")](part.text or "")
+    head = {"topic": topic, "seq": int(value.get("seq", "0")), "stamp_s": float(value.get("stamp", "0"))}
     return json.dumps({**head, **fields}, ensure_ascii=False)
+
+
+@cache
+def _kinds(topic: str) -> dict[str, str]:
+    """Field → type; nothing of a topic that we do not know."""
+    return {field["name"]: field["type"] for field in fields_of(TYPES[topic])} if topic in TYPES else {}
+
+
+def _short(words: list[str]) -> list[str]:
+    """Numbers without the digits that no sensor has; a text as it is."""
+    values = [_number(word) for word in words]
+    return words if None in values else [f"{value:.7g}" if "." in word else word for value, word in zip(values, words, strict=True)]
 
 
 def _number(word: str) -> float | None:
@@ -50,3 +66,9 @@ def _number(word: str) -> float | None:
     except ValueError:
         return None
     return number if math.isfinite(number) else None
+
+
+_READ: dict[str, Callable[[str], Any]] = {
+    "str": str, "base64": str, "int": int, "float": _number, "bool": lambda text: text == "true",
+    "ints": lambda text: [*map(int, text.split())], "floats": lambda text: [*map(_number, text.split())],
+}  # fmt: skip

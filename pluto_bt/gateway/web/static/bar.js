@@ -3,6 +3,8 @@
 import { age, byId, clock, degrees, say, show } from "./dom.js";
 import { missionReason, missionWords } from "./panels.js";
 
+const SILENT_MS = 1200; // the answer to a ping comes each second, if nothing else does
+
 export class Bar {
   constructor(store, robot, link) {
     Object.assign(this, { store, robot, link, clock_s: 0, clock_ms: performance.now() });
@@ -66,8 +68,9 @@ export class Bar {
   linkState() {
     const { link } = this, element = byId("link");
     document.body.dataset.link = link.isUp ? "up" : "none";
-    say(element, link.isUp ? `● ${link.roundTrip_ms === null ? "…" : `${Math.max(1, link.roundTrip_ms).toFixed(0)} ms`}` : "▲ no link");
-    byId("gauge-link").dataset.state = link.isUp ? "up" : "none";
+    const isSilent = link.isUp && link.silent_ms > SILENT_MS, trip = link.roundTrip_ms === null ? "…" : `${Math.max(1, link.roundTrip_ms).toFixed(0)} ms`;
+    say(element, !link.isUp ? "▲ no link" : isSilent ? `▲ silent ${age(link.silent_ms / 1000)}` : `● ${trip}`);
+    byId("gauge-link").dataset.state = link.isUp && !isSilent ? "up" : "none";
     show(byId("no-link"), !link.isUp);
     if (!link.isUp) say(byId("no-link"), `No link for ${age((performance.now() - link.lost_ms) / 1000)}${link.farewell ? ` (${link.farewell})` : ""}. What you see is old.`);
   }

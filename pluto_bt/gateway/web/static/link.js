@@ -120,10 +120,17 @@ export class Link {
     });
   }
 
+  /** So long not a byte came. */
+  get silent_ms() {
+    return performance.now() - this.heard_ms;
+  }
+
   look() {
     const now_ms = performance.now();
-    if (this.isUp && now_ms - this.heard_ms > LOST_MS) this.socket.close();
-    if (this.isUp && now_ms - this.heard_ms > 2 * LOST_MS) this.closed(this.socket); // the closing handshake may never end
+    if (this.isUp && this.silent_ms > LOST_MS) {
+      this.socket.close();
+      this.closed(this.socket); // at once: the closing handshake may never end
+    }
     if (!this.isUp && this.socket?.readyState === WebSocket.CONNECTING && now_ms - this.opened_ms > 2 * LOST_MS) this.socket.close();
     if (this.isUp && now_ms - (this.pinged_ms ?? 0) >= PING_MS) {
       this.pinged_ms = now_ms;

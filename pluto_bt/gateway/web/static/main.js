@@ -53,7 +53,7 @@ function showRobot({ scenery, store, tabs, tree, events, token }) {
   Object.defineProperty(why, "now_s", { get: () => bar.now_s });
   tree.clock = () => bar.now_s;
   new Halt(link, store, lease);
-  new Mission(link, store);
+  new Mission(link, store, lease);
   const modules = new Modules(link, store);
   tabs.onOpen("modules", () => modules.look());
   new Drive(link, store, lease, orders, scenery.robot);

@@ -28,9 +28,9 @@ export function placed([x, y, theta], px, py) {
 }
 
 export class Trail {
-  /** `track`: the whole way of a recording, [x, y, t]; only what lies behind is drawn. */
+  /** `track`: the whole way of a recording, [x, y, t, theta]; only what lies behind is drawn. */
   constructor(track = null) {
-    this.track = track;
+    this.track = track?.map(([x, y, t_s]) => [x, y, t_s, false]);
     this.points = [];
   }
 

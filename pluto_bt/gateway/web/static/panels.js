@@ -52,8 +52,8 @@ export function missionReason({ state, reason }) {
 }
 
 export class Mission {
-  constructor(link, store) {
-    Object.assign(this, { link, store });
+  constructor(link, store, lease) {
+    Object.assign(this, { link, store, lease });
     store.on("mission/state", ({ fields }) => this.take(fields));
     for (const button of byId("mission-ops").children) button.onclick = () => this.order({ op: button.dataset.op });
     byId("mission-start").onclick = () => this.start(byId("mission-choice").value);
@@ -72,9 +72,11 @@ export class Mission {
     byId("mission-choice").replaceChildren(...rows.map(({ name }) => make("option", { value: name }, name)));
   }
 
+  /** A mission that goes on needs no lease; one that is still held would stop it when this page is closed. */
   async order(given) {
     try {
       await this.link.ask("mission", given);
+      if (this.lease.isMine && ["start", "resume"].includes(given.op)) await this.lease.give();
       return true;
     } catch (error) {
       toast(error.message);

@@ -2,7 +2,7 @@
 
 import { age, byId, make, say } from "./dom.js";
 
-const EVERY_MS = 500;
+const EVERY_MS = 500, OLD_MS = 2000; // an answer so old is none
 
 export class Why {
   /** Without a link (a recording) it only shows what it is given. */
@@ -10,19 +10,33 @@ export class Why {
     this.link = link;
     this.seen = "";
     if (!link) return;
-    setInterval(() => link.isUp && !document.hidden && this.look(), EVERY_MS);
+    this.told_ms = performance.now();
+    setInterval(() => this.turn(), EVERY_MS);
     link.on("up", () => this.look());
-    link.on("down", () => this.unknown());
+    link.on("down", () => this.unknown("Without a link nobody here knows what the robot does."));
+  }
+
+  turn() {
+    if (!this.link.isUp || document.hidden) {
+      this.told_ms = performance.now();
+      return;
+    }
+    const old_ms = performance.now() - this.told_ms;
+    if (old_ms > OLD_MS) this.unknown(`The robot has not answered for ${age(old_ms / 1000)}.`);
+    this.look();
   }
 
   look() {
-    this.link.ask("why").then((answer) => this.show(answer.moving === "true", answer.rows, this.now_s ?? 0)).catch(() => {});
+    this.link.ask("why").then((answer) => {
+      this.told_ms = performance.now();
+      this.show(answer.moving === "true", answer.rows, this.now_s ?? 0);
+    }).catch(() => {});
   }
 
-  unknown() {
+  unknown(text) {
     byId("verdict").dataset.state = "unknown";
     say(byId("verdict"), "Unknown");
-    byId("causes").replaceChildren(make("li", {}, "Without a link nobody here knows what the robot does."));
+    byId("causes").replaceChildren(make("li", {}, text));
     this.seen = "";
   }
 
