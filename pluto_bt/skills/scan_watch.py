@@ -1,4 +1,7 @@
-"""Can the laser be trusted? Age, holes, a fatal error, and content that does not change although the robot moves."""
+"""Can the laser be trusted? Age, holes, a fatal error, and content that does not change although the robot moves.
+
+The one judge of the laser. Avoidance and stop filter have one each, with limits and memory of their own: neither trusts the other.
+"""
 
 from __future__ import annotations
 
@@ -27,13 +30,18 @@ class ScanWatch:
     """Looks at each scan once; `verdict` tells at any moment."""
 
     def __init__(self, laser: Laser, stale_s: float, holes: float) -> None:
-        self._stale_s = stale_s or laser.arrival_delay_s + 1.25 / laser.rate_hz
-        self._max_range_m = laser.max_range_m
-        self._holes = holes
+        """`stale_s`: how old the newest scan may be, 0 = the laser's delay and 1.25 periods; `holes`: the share of beams that may tell nothing."""
+        self._laser = laser
+        self.tune(stale_s, holes)
         self._last: LaserScan | None = None
         self._anchors: list[Planar | None] = [None, None]  # where the robot was when the content of each half last changed
         self._fault = _bad("no scan yet")
         self._good_in_a_row = GOOD_IN_A_ROW - 1  # the first scan of a run needs no other
+
+    def tune(self, stale_s: float, holes: float) -> None:
+        """These limits count from now on."""
+        self._stale_s = stale_s or self._laser.arrival_delay_s + 1.25 / self._laser.rate_hz
+        self._holes = holes
 
     def look(self, scan: LaserScan, laser: Planar | None) -> bool:
         """Judge a scan taken from `laser` (None: nobody knows where); True if it may be used."""
@@ -82,7 +90,7 @@ class ScanWatch:
         if before is None or at is None or not are_same(now, before):
             self._anchors[which] = laser
             return False
-        if np.count_nonzero(now < self._max_range_m) < RETURNS:
+        if np.count_nonzero(now < self._laser.max_range_m) < RETURNS:
             return False
         return math.hypot(laser[0] - at[0], laser[1] - at[1]) > MOVED_M or abs(math.remainder(laser[2] - at[2], math.tau)) > MOVED_RAD
 

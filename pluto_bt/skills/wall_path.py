@@ -4,7 +4,7 @@ Two balls roll along the wall. The first, as wide as the narrowest opening that 
 not fit into are passed by, posts that stand near belong to the wall. The second rolls along what the first has touched. It is larger than the
 distance to keep, so that it rounds off inner corners, and the path runs inside it at that distance from where it touches: arcs of the
 distance around outer corners, arcs of the fillet in inner ones. Where there is no room for that it shrinks, down to the first ball.
-In pockets, where the camera would be left too far from everything, the path leans in.
+Where the camera would be left too far from everything, or come too near, the path leans (`camera_lean.py`).
 
 All is in the robot frame, metres and radians; for a wall on the right the caller mirrors points and path.
 """
@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pluto_bt.skills.camera_lean import leaned
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.rolling import roll
 
@@ -29,9 +30,7 @@ GROWTH = 1.15  # of a ball that has found more room, from step to step
 LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
 HALVINGS = 5
-LEAN_M, SPARE_M = 0.35, 0.2  # so far at most the path leans into a pocket, and from so much on that the camera is too far away
-LEANING_M = 0.6  # so far before and after …
-TOO_NEAR_M = 0.1  # … but not so far that the camera would be nearer than by this
+LEAN_M = 0.35  # so far at most the path leans to the wall
 LEFT_RAD = (math.radians(-10.0), math.pi)  # where a wall on the left is looked for first
 
 
@@ -111,7 +110,6 @@ def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
     for halving in range(HALVINGS + 1):
         share = 1.0 if halving == 0 else 0.5 * (low + high)
         path = _inside(chain, rows[0], end, ball.radius_m, share, wish)
-        path = None if path is None else _leaning(path, points, wish)
         if path is not None and len(path) - foot_of(path) > ENOUGH_M / STEP_M and _is_clear(path, points, wish.least_m):
             low, best = share, path
             if halving == 0:
@@ -121,6 +119,7 @@ def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
     path = best if best is not None else _inside(chain, rows[0], end, ball.radius_m, 0.0, wish)
     if path is None:
         return None
+    path = _leaning(path, points, wish)
     foot = foot_of(path)
     distance_m = min(wish.distance_m, ball.radius_m + low * (_full_m(ball.radius_m, wish) - ball.radius_m))
     return WallPath(path[:, :3], foot, distance_m, _next_ball(rows, path[foot, 3:], ball.radius_m))
@@ -190,23 +189,10 @@ def _offset(rows: Array, normals_rad: Array, inner_m: float) -> Array:
 
 
 def _leaning(path: Array, points: Array, wish: Wish) -> Array:
-    """The path, nearer to the wall on the next metres where the camera would else be farther from everything than `SPARE_M` too much."""
-    x_m, y_m, away_m = wish.camera_m
-    ahead = path[: foot_of(path) + int((AHEAD_M + LEANING_M) / STEP_M)]
-    way_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(ahead[:, :2], axis=0).T))))
-    some = ahead[::3]
-    c, s = np.cos(some[:, 2:3]), np.sin(some[:, 2:3])
-    camera_x, camera_y = some[:, :1] + c * x_m - s * y_m, some[:, 1:2] + s * x_m + c * y_m
-    squares = (camera_x - points[:, 0]) ** 2 + (camera_y - points[:, 1]) ** 2
-    off_m = np.sqrt(squares.min(axis=1)) - away_m
-    most_m = max(0.0, min(LEAN_M, wish.distance_m - wish.least_m))
-    over_m = np.clip(off_m - SPARE_M, 0.0, most_m)
-    near = np.maximum(1.0 - np.abs(way_m[::3, None] - way_m[::3]) / LEANING_M, 0.0)
-    leans_m = np.minimum((over_m * near).max(axis=1), np.maximum(off_m + TOO_NEAR_M, 0.0))
-    lean_m = np.interp(way_m, way_m[::3], leans_m)
-    ahead[:, 0] -= lean_m * np.sin(ahead[:, 2])
-    ahead[:, 1] += lean_m * np.cos(ahead[:, 2])
-    return path
+    """The path, leaning such that the camera keeps its distance, where there is room for that."""
+    limits_m = -0.5 * wish.fillet_m, max(0.0, min(LEAN_M, wish.distance_m - wish.least_m))
+    lean = leaned(path, foot_of(path), points, wish.camera_m, limits_m)
+    return lean if lean is path or _is_clear(lean, points, wish.least_m) else path
 
 
 def foot_of(path: Array) -> int:

@@ -72,9 +72,10 @@ def test_going_back_gives_the_same_as_coming_from_before(scenario: Play, mission
 
 
 def test_a_run_in_threads_runs_again_identically(scenario: Play, mission: str, tmp_path: Path) -> None:
-    recorded(scenario, tmp_path / "a.mcap", mission, realtime=True, speed=6.0, gateway="127.0.0.1:0", max_time_s=15.0)
+    """How often a thread ticks in these 2.5 s of wall time is the machine's affair (25 to 150 times); that no tick is missing is the box's."""
+    run = recorded(scenario, tmp_path / "a.mcap", mission, realtime=True, speed=6.0, gateway="127.0.0.1:0", max_time_s=15.0)
     box = opened(tmp_path / "a.mcap")
-    assert box.run.mode == "threads" and len(box) > 10, "a busy machine ticks less often than it should"
+    assert box.run.mode == "threads" and len(box) >= run.ticks > 10
     assert replay_file(tmp_path / "a.mcap") == []
 
 

@@ -20,7 +20,7 @@ RANGES_M = read_only(3.0 + np.sin(np.arange(181) / 30.0))
 
 @pytest.mark.parametrize(
     ("turned_rad", "is_trusted"),
-    [(0.0, True), (0.02, True), (-0.02, True), (0.05, False), (-0.05, False)],
+    [(0.0, True), (0.015, True), (-0.015, True), (0.05, False), (-0.05, False)],
 )
 @pytest.mark.parametrize("heading_rad", [0.0, math.pi - 0.01, 0.01 - math.pi])
 def test_the_same_scan_again_is_frozen_only_if_the_robot_turned(heading_rad: float, turned_rad: float, is_trusted: bool) -> None:
