@@ -155,13 +155,13 @@ class Surroundings:
         """True if the laser saw somebody walk a moment ago, however far."""
         return len(self._walked.places(now_s)) > 0
 
-    def is_open_but_for_walkers(self, goal: Pair, now_s: float) -> bool:
-        """True if there would be a way to a goal (`Localization/Pose`) but for what stands where somebody walked a moment ago."""
+    def find_behind_walkers(self, goal: Pair, now_s: float) -> Way | None:
+        """The way to a goal (`Localization/Pose`) that there would be but for what stands where somebody walked a moment ago."""
         places = self._walked.places(now_s)
         if not len(places):
-            return False
+            return None
         ground = self.map.without_walkers(places, now_s)
-        return self.ways.to_goal(self.robot, self.to_dead_reckoning(goal), self.rectangle_here, ground) is not None
+        return self.ways.to_goal(self.robot, self.to_dead_reckoning(goal), self.rectangle_here, ground)
 
     @property
     def rectangle_here(self) -> Rectangle | None:
