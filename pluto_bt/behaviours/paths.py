@@ -28,6 +28,7 @@ POINT_TOLERANCE_M: Final = 0.4
 NEW_HEADING_RAD: Final = math.radians(8.0)
 REFRESH_S: Final = 2.0
 AGAIN_S: Final = 1.0  # while somebody is in the way, a path is looked for so often
+PATIENCE_S: Final = 5.0  # then the robot goes nearer, and sees them better
 PEOPLE: Final = "every way is blocked, and somebody is about who will walk on: waiting"
 SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on
 GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
@@ -53,7 +54,7 @@ def is_near(around: Surroundings, goal: Pair) -> bool:
 
 class FindPath(RobotLeaf):
     """Looks for the best open path to `goal`, and fails with `no-path` where there is none; or to ground that is not explored yet, and
-    says whether it has `found` any."""
+    says whether it has `found` any. Where only somebody who walks is in the way to a goal it waits, and takes now and then the path up to him."""
 
     INPUT_PORTS = dict(GOAL)
     OUTPUT_PORTS = {
@@ -83,10 +84,14 @@ class FindPath(RobotLeaf):
             return self.succeed("the goal is near")
         self._set_output("near", False)
         around.way = around.find(goal)
-        if around.way is None and goal is not None and around.await_passers_by(self.now_s()):
-            self._next_s = self.now_s() + AGAIN_S
-            return self.wait(PEOPLE)
-        if around.way is not None and not around.headway.decide(around.robot[:2]):
+        now_s = self.now_s()
+        if around.way is None and goal is not None:
+            behind = around.find_behind_walkers(goal, now_s)
+            if around.await_passers_by(now_s) if behind is None else now_s - self._start_s < PATIENCE_S:
+                self._next_s = now_s + AGAIN_S
+                return self.wait(PEOPLE)
+            around.way = behind
+        if around.way is not None and not around.sees_walkers(now_s) and not around.headway.decide(around.robot[:2]):
             if goal is not None:
                 return self.fail("stuck", "one path after the other ends here")
             x_m, y_m = around.way.points[-1].tolist()

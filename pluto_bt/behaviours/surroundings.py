@@ -11,21 +11,23 @@ import math
 import msgspec
 
 from pluto_bt.behaviours.robot import Robot, pose_of
-from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, Pair, Pose
+from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, LaserScan, Pair, Pose
 from pluto_bt.maps.platform import Platform
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
-from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LocalMap
+from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.passers_by import PassersBy
 from pluto_bt.skills.rays import Openings
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.sight import ScanView
+from pluto_bt.skills.walked_ground import WalkedGround
 from pluto_bt.skills.ways import Way, Ways
 
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
 FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
+FEET_S = 6.0  # what looks down has to see a low thing twice in so long
 MOST_DOUBT_M = 0.6  # with more doubt the ground along the edges would be given up
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
@@ -45,7 +47,7 @@ class Surroundings:
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
         self._refreshed_s = -math.inf
-        self._passers_by = PassersBy()
+        self._passers_by, self._walked = PassersBy(), WalkedGround(self.map.look_m)
         self._first_variance_m2 = math.inf  # of the believed position when the rectangle was set
         self._doubt_m = 0.0
         self.begin(None)
@@ -85,6 +87,7 @@ class Surroundings:
         """What was seen is not known any more; what was explored is."""
         for grid in self._grids():
             grid.erase(self.robot[:2], 4.0 * CELLS * grid.cell_m, inside=True)
+        self._walked.forget()
         self._refreshed_s = -math.inf
 
     def forget_square(self, middle: Pair, side_m: float, *, inside: bool) -> None:
@@ -122,11 +125,20 @@ class Surroundings:
             if view.laser is not None and self._laser is not None:
                 for grid in self._grids():
                     grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
+                self._note_walkers(view.scan, view.laser, view.tilt_rad)
         if now_s - self._refreshed_s >= REFRESH_S:
             self._refreshed_s = now_s
             for grid in self._grids():
                 grid.refresh(now_s)
         return True
+
+    def _note_walkers(self, scan: LaserScan, laser: Planar, tilt_rad: float) -> None:
+        """Who walks is found by level scans; what the others find of him are his feet."""
+        if abs(tilt_rad) < LEVEL_RAD:
+            self._walked.take(scan, laser)
+        elif len(feet := self._walked.places(scan.stamp_s, FEET_S)):
+            for grid in self._grids():
+                grid.forget_feet(feet)
 
     def _watch_passers_by(self, robot: Robot, now_s: float) -> None:
         held, raw, bumper = robot.newest("filter/status"), robot.newest("ATRV2/Drive/Raw"), robot.newest("ATRV2/Bumper")
@@ -138,6 +150,18 @@ class Surroundings:
     def await_passers_by(self, now_s: float) -> bool:
         """True while somebody is about who will walk on: what is blocked is blocked for a while."""
         return self._passers_by.are_awaited(now_s)
+
+    def sees_walkers(self, now_s: float) -> bool:
+        """True if the laser saw somebody walk a moment ago, however far."""
+        return len(self._walked.places(now_s)) > 0
+
+    def find_behind_walkers(self, goal: Pair, now_s: float) -> Way | None:
+        """The way to a goal (`Localization/Pose`) that there would be but for what stands where somebody walked a moment ago."""
+        places = self._walked.places(now_s)
+        if not len(places):
+            return None
+        ground = self.map.without_walkers(places, now_s)
+        return self.ways.to_goal(self.robot, self.to_dead_reckoning(goal), self.rectangle_here, ground)
 
     @property
     def rectangle_here(self) -> Rectangle | None:

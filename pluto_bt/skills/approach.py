@@ -18,6 +18,7 @@ SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
 TURNING_M = 0.06
+SWEPT_M = 0.2  # a turning cone is a sixth of what it sweeps in three rounds from where it is thought: less than the edge that counts as INSIDE leaves out
 GRAZING = 8.0  # a wall that a cone's edge grazes comes nearer by so much more than the end of the cone sweeps: at seven degrees
 FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
 MOST_LOST = 4  # one echo in a hundred gets lost: three in a row do so within some minutes, and who stands must not come out of nothing then
@@ -60,7 +61,7 @@ class Approach:
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
         swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
-        stays = heard_m[-1] * swept_rad < TURNING_M  # where a cone ends while the robot turns is not known well enough to say what was free
+        stays = heard_m[-1] * swept_rad < SWEPT_M  # where a cone ends while the robot turns fast is not known well enough to say what was free
         moved = walked(heard_m, places, axes, near, half_rad) | (came & stays)
         if not moved.any():
             return NOTHING

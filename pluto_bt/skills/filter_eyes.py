@@ -74,12 +74,10 @@ class FilterEyes:
         self.walkers.forget()
 
     def people(self, now_s: float) -> Array:
-        """Where somebody may be, as `WalkerWatch.rows`. A robot without a laser sees none of those beside who is heard: where one walks, others may,
-        and so may who started it a moment ago.
-        """
+        """Where somebody may be, as `WalkerWatch.rows`. Where one walks, others may whom no sensor has found; and so may who started it a moment ago."""
         rows = self.walkers.rows(now_s)
         is_new = self._begun_s is not None and now_s - self._begun_s < self._parameters.starter_s
-        is_anywhere = is_new or (self._eye is None and self.walkers.is_anybody_about(now_s))
+        is_anywhere = is_new or self.walkers.is_anybody_about(now_s)
         return np.vstack((rows, ANYWHERE)) if is_anywhere else rows
 
     def hears(self, now_s: float) -> bool:

@@ -10,15 +10,14 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
 
-Indices = NDArray[np.intp]
 CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
@@ -184,11 +183,31 @@ class LocalMap:
         i0, j0 = max(0, math.floor(low_i) - 2 * keep), max(0, math.floor(low_j) - 2 * keep)
         i1, j1 = min(CELLS, math.ceil(high_i) + 2 * keep), min(CELLS, math.ceil(high_j) + 2 * keep)
         self._window = None
-        oldest_s = max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
+        oldest_s = self._oldest_s(now_s)
         i0, i1, j0, j1 = changes(self.evidence, self.low_s, oldest_s, self._stands, i0, i1, j0, j1)
         if i0 < i1:  # mostly a few cells, or none
             i0, i1, j0, j1 = max(0, i0 - 2 * keep), min(CELLS, i1 + 2 * keep), max(0, j0 - 2 * keep), min(CELLS, j1 + 2 * keep)
             clearances(self.evidence, self.low_s, oldest_s, i0, i1, j0, j1, self.clearance, keep, self.far_cells)
+
+    def without_walkers(self, places: Array, now_s: float) -> tuple[Bytes, Floats]:
+        """Evidence and clearances as if nothing stood at and beside `places` (n, 2), where somebody walked."""
+        at = self._beside(places, BODY_M)
+        evidence, low_s, clearance = self.evidence.copy(), self.low_s.copy(), np.full_like(self.clearance, self.far_cells)
+        evidence[at], low_s[at] = np.minimum(evidence[at], 0), NEVER_S
+        clearances(evidence, low_s, self._oldest_s(now_s), 0, CELLS, 0, CELLS, clearance, math.ceil(self.far_cells), self.far_cells)
+        return evidence, clearance
+
+    def forget_feet(self, places: Array) -> None:
+        """What a scan that looks down found at `places` (n, 2), where somebody walks, does not lie there."""
+        at = self._beside(places, self.cell_m)
+        self.low_s[at] = self._first_s[at] = NEVER_S
+
+    def _beside(self, places: Array, reach_m: float) -> tuple[Indices, Indices]:
+        return cells_beside(places / self.cell_m - (self.i0, self.j0), math.ceil(reach_m / self.cell_m), CELLS)
+
+    def _oldest_s(self, now_s: float) -> float:
+        """What was seen to lie low before is not known any more."""
+        return max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
 
     def _changed(self, i: float, j: float, reach_m: float) -> None:
         reach = reach_m / self.cell_m

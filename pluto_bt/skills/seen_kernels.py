@@ -25,6 +25,7 @@ CONE_SLACK_M = 0.12  # the same for an echo
 FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
 TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
+TWICE_S = 0.25  # a round of the ring ago, and in between none may be missing but one
 SUDDEN_M = 1.0  # who is heard so near where nothing was known may be on his way
 CAME, SUDDEN = 1, 2
 ANYHOW, INSIDE = 0, 1  # layers of `heard`
@@ -152,8 +153,9 @@ def hear_cones(
                     if clears == 1:
                         if away_m < clear_m:
                             clear_cell(seen, stamps, row, column, stamp_s)
+                            is_sure = heard[ANYHOW, row, column] > stamp_s - TWICE_S  # one lost echo proves nothing
                             heard[ANYHOW, row, column] = stamp_s
-                            if aside_m < ahead_m * opening - CELL_M:  # what stands on the edge is heard now and then
+                            if is_sure and aside_m < ahead_m * opening - CELL_M:  # what stands on the edge is heard now and then
                                 heard[INSIDE, row, column] = stamp_s
                     elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)

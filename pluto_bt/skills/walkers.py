@@ -14,10 +14,10 @@ import numpy as np
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.skills.movers import Mask, Movers, came_closer
 from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.scans_before import ScansBefore
 from pluto_bt.skills.walker import BODY_M, IN_VIEW_S, Walker
 
 REACH_M = 6.0  # farther away, the beams are too far apart to tell
-BEFORE_S = 0.55  # a scan is compared with one so much older, so that who strolls has gone far enough to be noticed
 SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
 SURE = 2  # a single sighting may be a grazed edge
@@ -35,14 +35,13 @@ class WalkerWatch:
     def forget(self) -> None:
         """Nobody was ever seen."""
         self._movers = Movers()
-        self._scans: list[tuple[LaserScan, Planar]] = []
+        self._before = ScansBefore()
         self._walkers: list[Walker] = []
         self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
         """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
-        before = self._before(scan)
-        self._scans.append((scan, laser))
+        before = self._before.take(scan, laser)
         if before is None:
             return
         ranges = scan.ranges_m
@@ -83,15 +82,6 @@ class WalkerWatch:
             return NO_BODY
         seen = rows[rows[:, IN_VIEW] == 1.0]
         return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
-
-    def _before(self, scan: LaserScan) -> tuple[LaserScan, Planar] | None:
-        """The newest scan that is old enough to compare with, if it has the same beams."""
-        while len(self._scans) > 1 and scan.stamp_s - self._scans[1][0].stamp_s >= BEFORE_S - 0.05:
-            del self._scans[0]
-        if not self._scans or scan.stamp_s - self._scans[0][0].stamp_s > 2.0 * BEFORE_S or len(self._scans[0][0].ranges_m) != len(scan.ranges_m):
-            self._scans = []
-            return None
-        return self._scans[0]
 
     def _meet(self, seen: list[Walker]) -> None:
         """Who of the known ones was seen again, and who is new."""

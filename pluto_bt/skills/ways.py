@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.map_kernels import Bytes, Floats
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.way_kernels import search
@@ -15,6 +16,7 @@ from pluto_bt.skills.way_kernels import search
 TURNING_GAP_M = 0.15  # what must be left around a robot that turns on the spot
 RELAXED_M = 1.2  # so near to its start and its goal a way may be tighter and nearer to the edge of the rectangle
 GREED = 1.5  # the search hurries towards the goal, for it is asked often
+Ground = tuple[Bytes, Floats]  # evidence and clearance, as those of `LocalMap`
 BEYOND_M = 3.0  # a goal beyond the map is reached for now if the edge of the map is reached so near to it
 
 
@@ -43,15 +45,15 @@ class Ways:
         self._keys = np.zeros(2 * CELLS * CELLS, dtype=np.float32)
         self._places = np.zeros(2 * CELLS * CELLS, dtype=np.int32)
 
-    def to_goal(self, robot: Planar, goal: tuple[float, float], rectangle: Rectangle | None) -> Way | None:
-        """The best way to within the tolerance of a goal; None if there is none, whatever the unseen may hold."""
+    def to_goal(self, robot: Planar, goal: tuple[float, float], rectangle: Rectangle | None, ground: Ground | None = None) -> Way | None:
+        """The best way to within the tolerance of a goal; None if there is none, whatever the unseen may hold. `ground`: in place of the map's."""
         x_m, y_m = goal
         reach_m = self.map.parameters.tolerance_m
         is_inside = self.map.has_inside(x_m, y_m)
         if not is_inside:
             x_m, y_m = self._at_the_edge(robot, goal)
             reach_m = BEYOND_M
-        points = self._search(robot, (x_m, y_m), max(reach_m / self.map.cell_m, 0.8), rectangle)
+        points = self._search(robot, (x_m, y_m), max(reach_m / self.map.cell_m, 0.8), rectangle, ground)
         return None if points is None else Way(points, is_inside)
 
     def to_new_ground(self, robot: Planar, rectangle: Rectangle | None) -> Way | None:
@@ -69,12 +71,15 @@ class Ways:
                 share = min(share, ((most if step > 0.0 else least) - at) / step)
         return robot[0] + max(0.0, share) * dx, robot[1] + max(0.0, share) * dy
 
-    def _search(self, robot: Planar, goal: tuple[float, float], reach_cells: float, rectangle: Rectangle | None) -> Array | None:
+    def _search(
+        self, robot: Planar, goal: tuple[float, float], reach_cells: float, rectangle: Rectangle | None, ground: Ground | None = None
+    ) -> Array | None:
         map, p = self.map, self.map.parameters
         least, half = self.least_m / map.cell_m, max(p.path_half_width_m, self.least_m + 0.05) / map.cell_m
         wide, relaxed = max(map.far_cells, half), RELAXED_M / map.cell_m
+        evidence, clearance = (map.evidence, map.clearance) if ground is None else ground
         end = search(
-            map.evidence, map.covered, map.clearance, map.cell(robot[0], robot[1]), map.cell(*goal), reach_cells, self._in_cells(rectangle),
+            evidence, map.covered, clearance, map.cell(robot[0], robot[1]), map.cell(*goal), reach_cells, self._in_cells(rectangle),
             least, half, wide, relaxed, self.room_m / map.cell_m, GREED, self._cost, self._came, self._keys, self._places,
         )  # fmt: skip
         return None if end < 0 else self._traced(end)
