@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import re
 
-_QUOTE_OR_END = re.compile(rb"[\"'>]")
+_MARKS = {b"": re.compile(rb"[\"'><]"), b'"': re.compile(rb'["<]'), b"'": re.compile(rb"['<]")}
+"""What matters in a tag, by the quote that is open: `<` may stand nowhere in it, so the parser is given what there is, to say so at once."""
 _SPECIAL = ((b"<!--", b"-->"), (b"<![CDATA[", b"]]>"), (b"<?", b"?>"))
 _TAG_END = b">"
 
@@ -54,7 +55,7 @@ class Cutter:
                 return True
         if any(opening.startswith(head) for opening, _ in _SPECIAL):
             return False
-        self._closing = _TAG_END
+        self._closing, self._at = _TAG_END, begin + 1
         return True
 
     def _closed(self, raw: bytearray) -> int:
@@ -63,18 +64,13 @@ class Cutter:
             found = raw.find(self._closing, self._at)
             self._at = max(self._at, len(raw) - 2)
             return found + len(self._closing) if found >= 0 else 0
-        while True:
-            if self._quote:
-                found = raw.find(self._quote, self._at)
-                self._at = found + 1 if found >= 0 else len(raw)
-                if found < 0:
-                    return 0
-                self._quote = b""
-            mark = _QUOTE_OR_END.search(raw, self._at)
-            self._at = mark.end() if mark is not None else len(raw)
-            if mark is None or mark[0] == _TAG_END:
-                return self._at if mark is not None else 0
-            self._quote = bytes(mark[0])
+        while mark := _MARKS[self._quote].search(raw, self._at):
+            self._at = mark.end()
+            if mark[0] in b"<>":
+                return self._at
+            self._quote = b"" if self._quote else bytes(mark[0])
+        self._at = len(raw)
+        return 0
 
     def _count(self, is_end_tag: bool, is_empty: bool) -> None:
         self._depth += -1 if is_end_tag else 0 if is_empty else 1
