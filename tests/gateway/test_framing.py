@@ -93,7 +93,7 @@ ATTACKS = [
     (b"<a b='1' b='2'/>", "not-well-formed", 1, 10),
     (b"<a b=1/>", "not-well-formed", 1, 6),
     (b"<1/>", "not-well-formed", 1, 1),
-    (b"<a><b></c d='<e>", "not-well-formed", 1, 7),  # said before anything else has come
+    (b"<a><b></c d='<e>", "not-well-formed", 1, 11),  # said before anything else has come
     (b"<a b='x><c", "not-well-formed", 1, 9),
     (b"<a b=c\n<d", "not-well-formed", 1, 6),
     (b"<ping/><" + b"n" * BIG, "too-large", 1, 8),
