@@ -127,6 +127,10 @@ def test_the_commands_tell_a_run(scenario: Play, mission: str, tmp_path: Path, c
     assert re.search("▶ GoTo  goal=9;9  .● RUNNING", capsys.readouterr().out)
     assert main(["replay", str(file), "--execute"]) == 0
     assert "all identical" in capsys.readouterr().out
+    assert main(["replay", str(file), "--execute", "--mission", "t01_say_hello.xml"]) == 1, "a shipped mission by its name, as everywhere"
+    assert "differs from " in capsys.readouterr().out
+    assert main(["replay", str(file), "--mission", "t01_say_hello.xml"]) == 2
+    assert "--mission goes with --execute or --contracts" in capsys.readouterr().err
     file.write_bytes(file.read_bytes()[:-9000])
     assert main(["replay", str(file), "--execute"]) == 0
     assert "cut short" in capsys.readouterr().err
