@@ -47,7 +47,7 @@ def _parser() -> Parser:
 
 def _check(args: argparse.Namespace) -> tuple[float | None, Path | None]:
     """The time of `--at` and the file of `--mission`. Raises: InputError for what does not fit."""
-    from pluto_bt.commands.boxes import read_time
+    from pluto_bt.commands.option_values import read_time
 
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)
