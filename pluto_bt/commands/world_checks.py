@@ -9,7 +9,8 @@ import numpy as np
 
 from pluto_bt.maps.fault_table import SENSORS
 from pluto_bt.maps.placement import placed_outline, what_stands_at
-from pluto_bt.maps.world import At, FaultAction, SetTopic, When, World
+from pluto_bt.maps.script import At, FaultAction, SetTopic, When
+from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.source import Faults, Place, did_you_mean
 
