@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from pluto_bt.maps.world import FaultAction
+from pluto_bt.maps.script import FaultAction
 from pluto_bt.runtime.clock import NS, MonotonicClock, wait
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.watchdog import Hung

@@ -5,7 +5,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Mapping
 
-from pluto_bt.maps.world import FaultAction
+from pluto_bt.maps.script import FaultAction
 from sim.channel import Channel
 from sim.motors import Motors
 from sim.simtime import NEVER_NS, NS, SimTime, ticks_up

@@ -26,7 +26,7 @@ from drivers.records import (
     SpeedRecord,
     WristRecord,
 )
-from pluto_bt.maps.world import FaultAction
+from pluto_bt.maps.script import FaultAction
 from sim.noise import Noise
 
 R = TypeVar("R", bound=Record)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from pluto_bt.maps.world import Action, At, When, World
+from pluto_bt.maps.script import Action, At, When
+from pluto_bt.maps.world import World
 from sim.regions import Regions
 from sim.simtime import NEVER_NS, NS, ticks_up
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.maps.platform import Platform
-from pluto_bt.maps.world import Action, Carry, FaultAction, Put, Remove, World
+from pluto_bt.maps.script import Action, Carry, FaultAction, Put, Remove
+from pluto_bt.maps.world import World
 from sim.body import Body
 from sim.device import Device
 from sim.faultboard import FaultBoard

@@ -30,7 +30,8 @@ from pluto_bt.maps.platform import (
     WheelSpeed,
     Wrist,
 )
-from pluto_bt.maps.world import Action, At, Shape, World
+from pluto_bt.maps.script import Action, At
+from pluto_bt.maps.world import Shape, World
 from sim import BaseDevice, Simulator
 
 R = TypeVar("R", bound=Record)

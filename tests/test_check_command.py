@@ -296,6 +296,14 @@ def test_a_fault_that_means_nothing_on_the_robot(capsys: pytest.CaptureFixture[s
     assert [one["code"] for one in faults] == found and all(one["line"] == 2 and one["severity"] == "warning" for one in faults)
 
 
+@pytest.mark.parametrize("words", ["b.xml --format json a.xml", "--format json b.xml a.xml", "--format=json -- b.xml a.xml"])
+def test_options_may_stand_between_files(capsys: pytest.CaptureFixture[str], words: str) -> None:
+    for name in ("a.xml", "b.xml"):
+        Path(name).write_text("<world/", encoding="utf-8")
+    assert main(["check", *words.split()]) == 2
+    assert [fault["file"] for fault in json.loads(capsys.readouterr().out)["faults"]] == ["b.xml", "a.xml"]
+
+
 def test_what_is_like_no_file_is_not_taken_for_one(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "nofile.xml"]) == 2 and "did you mean" not in capsys.readouterr().err
     assert main(["diff", "yard.xml", "patrol.xml"]) == 2 and "found     a shipped world\n" in capsys.readouterr().err

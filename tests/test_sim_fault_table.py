@@ -8,7 +8,8 @@ import pytest
 from sim_worlds import at, everything, plain, room, run
 
 from pluto_bt.maps.fault_table import FAULTS, NAMED, FaultRow
-from pluto_bt.maps.world import FaultAction, Marker
+from pluto_bt.maps.script import FaultAction
+from pluto_bt.maps.world import Marker
 from sim import Simulator, WristDevice
 
 ROWS = [row for row in FAULTS if row.device not in NAMED]

@@ -10,7 +10,8 @@ from sim_worlds import at, box, plain, points, room, run, shipped
 
 from drivers.records import Record
 from pluto_bt.maps.platform import Platform
-from pluto_bt.maps.world import Actor, FaultAction, Marker, World
+from pluto_bt.maps.script import FaultAction
+from pluto_bt.maps.world import Actor, Marker, World
 from sim import Simulator
 
 

@@ -23,7 +23,8 @@ from drivers.records import (
     SpeedRecord,
     WristRecord,
 )
-from pluto_bt.maps.world import Area, Carry, FaultAction, Marker, Put, Remove, SetTopic, Terrain, When, World
+from pluto_bt.maps.script import Carry, FaultAction, Put, Remove, SetTopic, When
+from pluto_bt.maps.world import Area, Marker, Terrain, World
 from sim import Simulator, WristDevice
 
 SQUARE = points((1.0, -1.0), (2.0, -1.0), (2.0, 1.0), (1.0, 1.0))

@@ -13,7 +13,8 @@ from sim_worlds import at, box, cart, of_type, points, room, run
 
 from drivers.records import BumperRecord, OdometryRecord
 from pluto_bt.maps.platform import Bumpers
-from pluto_bt.maps.world import Actor, OccupancyGrid, Put, Remove, Shape, World
+from pluto_bt.maps.script import Put, Remove
+from pluto_bt.maps.world import Actor, OccupancyGrid, Shape, World
 from sim import Simulator
 
 

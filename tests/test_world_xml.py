@@ -16,7 +16,8 @@ from shared_data import shared_file
 
 from pluto_bt.maps import fault_table
 from pluto_bt.maps.load import load_world
-from pluto_bt.maps.world import At, Carry, FaultAction, Put, Remove, SetTopic, When, World
+from pluto_bt.maps.script import At, Carry, FaultAction, Put, Remove, SetTopic, When
+from pluto_bt.maps.world import World
 from pluto_bt.source import Fault, Faults, InputError
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -13,7 +13,7 @@ from typing import Any
 from pluto_bt.behaviours.reasons import REASONS
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState
 from pluto_bt.commands.inputs import Inputs
-from pluto_bt.maps.world import Action, Carry, FaultAction, Put
+from pluto_bt.maps.script import Action, Carry, FaultAction, Put
 from pluto_bt.runner import Runner, make_runner
 
 STILL_MPS, STILL_RADPS = 0.01, 0.02

@@ -19,7 +19,8 @@ from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.why_score import Asked, Broken, questions
 from pluto_bt.commands.files import package_root
 from pluto_bt.commands.inputs import Inputs
-from pluto_bt.maps.world import At, Shape, World
+from pluto_bt.maps.script import At
+from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import load_robot_file
 
 PAIRS = 40

@@ -13,7 +13,8 @@ import numpy as np
 from pluto_bt.bench.killed import killed_times_s
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.blackboard.messages import ActuatorState
-from pluto_bt.maps.world import At, FaultAction, Shape, World
+from pluto_bt.maps.script import At, FaultAction
+from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.run_options import Options

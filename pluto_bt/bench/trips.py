@@ -16,7 +16,8 @@ from pluto_bt.bench.row import BenchRow
 from pluto_bt.commands.files import package_root
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.maps.load import load_world
-from pluto_bt.maps.world import At, FaultAction, Marker, World
+from pluto_bt.maps.script import At, FaultAction
+from pluto_bt.maps.world import Marker, World
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.result import RunResult
 from pluto_bt.runner import make_runner

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import tempfile
+import weakref
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -48,7 +49,7 @@ def _of_carmen(name: str, faults: Faults) -> Box | None:
     for fault in faults.in_order() if box is not None else ():
         print(fault.as_text(), file=sys.stderr)
     if box is not None:
-        box.folder = folder
+        weakref.finalize(box, folder.cleanup)
     return box
 
 
@@ -62,18 +63,3 @@ def read_mcap(name: str) -> McapFile:
     faults.raise_errors()
     assert file is not None  # else there was a fault
     return file
-
-
-def read_time(text: str | None, option: str, faults: Faults) -> float | None:
-    """`--at T`: seconds of the run."""
-    if text is None:
-        return None
-    try:
-        time_s = float(text)
-    except ValueError:
-        time_s = -1.0
-    if not 0.0 <= time_s < 1e9:
-        what = f"{option} takes seconds of the run"
-        faults.error(Place(f"{option} {text}"), "bad-value", what, expected="a number from 0 to below 1e9", found=text or "nothing")
-        return None
-    return time_s

@@ -121,4 +121,5 @@ def _print(args: argparse.Namespace, faults: Faults, legs: list[LegTold]) -> Non
 
         print(sum_of(legs))
     errors = sum(fault.severity == "error" for fault in found)
-    print(f"{len(args.files)} checked, {errors} errors, {len(found) - errors} warnings", file=sys.stderr)
+    warnings = len(found) - errors
+    print(f"{len(args.files)} checked, {errors} error{'s' * (errors != 1)}, {warnings} warning{'s' * (warnings != 1)}", file=sys.stderr)

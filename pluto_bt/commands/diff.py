@@ -31,5 +31,5 @@ def main(argv: list[str]) -> int:
     changes = Comparison(*sides).changes
     for change in changes:
         print(change.as_text())
-    print(f"{len(changes)} differences" if changes else "no difference", file=sys.stderr)
+    print(f"{len(changes)} difference{'s' * (len(changes) != 1)}" if changes else "no difference", file=sys.stderr)
     return 1 if changes else 0

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TextIO
 
 from pluto_bt.commands.options import Parser
 from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.source.faults import fail
 
 if TYPE_CHECKING:
     from pluto_bt.record.box import Box
@@ -56,15 +57,13 @@ def _chosen(box: Box, asked: Sequence[str], form: str) -> list[str]:
 
 
 def _check_output(output: str | None, form: str, is_folder: bool) -> None:
-    from pluto_bt.commands.outputs import check_file
+    from pluto_bt.commands.outputs import check_output
 
-    faults = Faults()
-    if is_folder and (output is None or Path(output).suffix or Path(output).is_file()):
-        faults.error(Place(f"--output {output or ''}".rstrip()), "bad-option", "several topics make several tables", expected="--output FOLDER",
-                     found=output or "nothing", mend="name a folder, or choose one --topic")  # fmt: skip
-    elif output is not None and not is_folder:
-        check_file(output, "--output", () if form == "xml" else (FORMATS[form],), faults, is_data=True)
-    faults.raise_errors()
+    if not is_folder:
+        check_output(output, () if form == "xml" else (FORMATS[form],))
+    elif output is None or Path(output).suffix or Path(output).is_file():
+        fail(Place(f"--output {output or ''}".rstrip()), "bad-option", "several topics make several tables", expected="--output FOLDER",
+             found=output or "nothing", mend="name a folder, or choose one --topic")  # fmt: skip
 
 
 @contextmanager

@@ -13,7 +13,8 @@ from pluto_bt.maps.clearance import Blocked, path_is_clear
 from pluto_bt.maps.geometry import Pose, transform_points
 from pluto_bt.maps.platform import Limits
 from pluto_bt.maps.scene import Scene
-from pluto_bt.maps.world import At, Put, Remove, Shape, When, World
+from pluto_bt.maps.script import At, Put, Remove, When
+from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.skills.map_area import MapArea
 from pluto_bt.source import Faults, Place

@@ -48,6 +48,18 @@ def read_positive(text: str | None, option: str, faults: Faults) -> float | None
     return None
 
 
+def read_time(text: str | None, option: str, faults: Faults) -> float | None:
+    """`--at T`: seconds of the run."""
+    if text is None:
+        return None
+    time_s = _number(text)
+    if time_s is not None and 0.0 <= time_s < MAX_SECONDS:
+        return time_s
+    what = f"{option} takes seconds of the run"
+    faults.error(Place(f"{option} {text}"), "bad-value", what, expected=f"a number from 0 to below {MAX_SECONDS:g}", found=text or "nothing")
+    return None
+
+
 def read_ports(settings: Sequence[str], faults: Faults) -> dict[str, str]:
     """`--port NAME=VALUE` settings as a table."""
     ports: dict[str, str] = {}

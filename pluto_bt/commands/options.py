@@ -28,8 +28,9 @@ class Parser(argparse.ArgumentParser):
         return did_you_mean(strange[1], self._option_string_actions) if strange else ""
 
     def parse_args(self, args: Sequence[str], namespace: None = None) -> argparse.Namespace:  # type: ignore[override]  # argv is always given here
-        """Parse. Raises InputError for what cannot be understood."""
-        return super().parse_args(self._joined(list(args)))
+        """Parse; options may stand between files. Raises InputError for what cannot be understood."""
+        parse = super().parse_args if "--" in args else super().parse_intermixed_args  # the latter does not know "--"
+        return parse(self._joined(list(args)))
 
     def _joined(self, args: list[str]) -> list[str]:
         takes_value = {name for action in self._actions if action.option_strings and action.nargs is None for name in action.option_strings}

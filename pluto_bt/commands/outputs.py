@@ -49,6 +49,13 @@ def check_file(name: str | None, option: str, endings: tuple[str, ...], faults: 
         _try(path, place, faults)
 
 
+def check_output(name: str | None, endings: tuple[str, ...]) -> None:
+    """`--output` of a command that writes one file. Raises: InputError if it could not be written, or has none of the endings."""
+    faults = Faults()
+    check_file(name, "--output", endings, faults, is_data=True)
+    faults.raise_errors()
+
+
 def _try(path: Path, place: Place, faults: Faults) -> None:
     """Whether a file can be written is known for sure only by opening it."""
     is_new = not os.path.lexists(path)

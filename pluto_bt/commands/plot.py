@@ -24,12 +24,10 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--world", metavar="W", help="draw it into this world or map, not into the one of the recording")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_box
-    from pluto_bt.commands.outputs import check_file
+    from pluto_bt.commands.outputs import check_output
 
     output = args.output or str(Path(args.file).with_suffix(ENDINGS[0]))
-    faults = Faults()
-    check_file(output, "--output", ENDINGS, faults)
-    faults.raise_errors()
+    check_output(output, ENDINGS)
     box = read_box(args.file, needs_ticks=False)
     world, driven = seen_from_above(box, args.world)
     from pluto_bt.commands.box_picture import draw_box

@@ -15,8 +15,10 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--output", metavar="FILE.mcap", help="write here instead of in place")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_mcap
+    from pluto_bt.commands.outputs import check_output
     from pluto_bt.record.repair import repair
 
+    check_output(args.output, (".mcap",))
     file = read_mcap(args.file)
     to = Path(args.output or args.file)
     readable = sum(1 for _ in file.lines())  # reads it all, so that it is known whether it is whole

@@ -14,6 +14,7 @@ from pluto_bt.source import Faults, InputError
 if TYPE_CHECKING:
     from pluto_bt.commands.progress import Progress
     from pluto_bt.resume import ResumeRequest
+    from pluto_bt.runner import Runner
 
 
 def main(argv: list[str]) -> int:
@@ -109,8 +110,12 @@ def _run(args: argparse.Namespace) -> RunResult:
         result = runner.run()
     progress.end(result)
     if args.plot:
-        from pluto_bt.commands.map_picture import draw_run
-
-        draw_run(args.plot, runner)
+        _draw(args.plot, runner)
         progress.line(f"picture: {args.plot}")
     return result
+
+
+def _draw(path: str, runner: Runner) -> None:
+    from pluto_bt.commands.map_picture import draw_run  # matplotlib: only for who wants a picture
+
+    draw_run(path, runner)

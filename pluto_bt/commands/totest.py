@@ -59,7 +59,9 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--output", metavar="test_NAME.py", help="the test file (default: test_FILE.py here); its folder of files is made beside it")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_box
+    from pluto_bt.commands.outputs import check_output
 
+    check_output(args.output, (".py",))
     box = read_box(args.file)
     name = re.sub(r"\W+", "_", Path(args.file).stem).strip("_").lower() or "run"
     to = Path(args.output or f"test_{name}.py")

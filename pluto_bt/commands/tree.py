@@ -80,7 +80,8 @@ def _of_run(args: argparse.Namespace) -> Drawn | None:
 
     if args.gateway is not None:
         return of_gateway(args.gateway)
-    from pluto_bt.commands.boxes import read_box, read_time
+    from pluto_bt.commands.boxes import read_box
+    from pluto_bt.commands.option_values import read_time
 
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)

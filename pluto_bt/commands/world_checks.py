@@ -9,13 +9,23 @@ import numpy as np
 
 from pluto_bt.maps.fault_table import SENSORS
 from pluto_bt.maps.placement import placed_outline, what_stands_at
-from pluto_bt.maps.world import At, FaultAction, SetTopic, When, World
+from pluto_bt.maps.script import At, FaultAction, SetTopic, When
+from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.source import Faults, Place, did_you_mean
 
 
-def check_start(world: World, robot: RobotFile, start: tuple[float, float, float], asked: str | None, faults: Faults) -> None:
-    """A fault if something stands at the start (x m, y m, theta rad); `asked` is the text of `--start`, if that was given."""
+def check_together(world: World, robot: RobotFile | None, start: tuple[float, float, float] | None, asked: str | None, faults: Faults) -> None:
+    """The faults of a world with the robot that starts in it at `start` (None: nobody says where); `asked` is the text of `--start`, if given."""
+    if robot is not None and start is not None:
+        _check_start(world, robot, start, asked, faults)
+    _check_script(world, faults)
+    if robot is not None:
+        _check_faults(world, robot, faults)
+
+
+def _check_start(world: World, robot: RobotFile, start: tuple[float, float, float], asked: str | None, faults: Faults) -> None:
+    """A fault if something stands at the start (x m, y m, theta rad)."""
     hit = what_stands_at(world, placed_outline(np.array(robot.body.outline_m), start))
     if hit:
         place = Place(f"--start {asked}") if asked is not None else in_file(world.robot.place, world)
@@ -23,13 +33,13 @@ def check_start(world: World, robot: RobotFile, start: tuple[float, float, float
                      found=f"{start[0]:g},{start[1]:g},{math.degrees(start[2]):g}", mend="give a free place with --start X,Y,DEG")  # fmt: skip
 
 
-def check_script(world: World, faults: Faults) -> None:
+def _check_script(world: World, faults: Faults) -> None:
     """`<set>` writes only topics whose writer is `world`, with true or false; a fault hits a module that there is."""
     for entry in world.script:
         _check_actions(entry, faults)
 
 
-def check_faults(world: World, robot: RobotFile, faults: Faults) -> None:
+def _check_faults(world: World, robot: RobotFile, faults: Faults) -> None:
     """Warn of scripted faults that mean nothing on this robot; it need not be the one that the world was made for."""
     for action in (action for entry in world.script for action in entry.actions):
         if not isinstance(action, FaultAction) or action.device not in SENSORS:

@@ -1,4 +1,4 @@
-"""A world as data: what stands where, what moves, what happens. Metres and radians, map frame. Read by `load_world` from three formats.
+"""A world as data: what stands where, what moves; what happens is script.py. Metres and radians, map frame. Read by `load_world` from three formats.
 
 DESIGN.md, section 5, is the contract of the XML form. Every item keeps its `place` in the file for later checks.
 """
@@ -11,10 +11,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.source import Place
+from pluto_bt.maps.script import At, When
+from pluto_bt.source.faults import NOWHERE, Place
 
 Points = NDArray[np.float64]  # (n, 2) metres, map frame, read-only
-NOWHERE = Place()
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,79 +138,6 @@ class RobotStart:
     platform: str = ""
     pose: tuple[float, float, float] | None = None
     ideal: bool = False
-    place: Place = NOWHERE
-
-
-@dataclass(frozen=True, slots=True)
-class Remove:
-    """Takes a shape or actor away."""
-
-    id: str
-    place: Place = NOWHERE
-
-
-@dataclass(frozen=True, slots=True)
-class Put:
-    """`<place>`: moves a shape's or actor's centre and makes it present; x, y None = where the file drew it."""
-
-    id: str
-    x_m: float | None
-    y_m: float | None
-    place: Place = NOWHERE
-
-
-@dataclass(frozen=True, slots=True)
-class Carry:
-    """`<place>` with the robot's name: somebody lifts the robot and sets it down there; its wheels notice nothing. theta None = as it stood."""
-
-    x_m: float
-    y_m: float
-    theta_rad: float | None = None
-    place: Place = NOWHERE
-
-
-@dataclass(frozen=True, slots=True)
-class FaultAction:
-    """A device or a part of the software fails. `for_s` 0 = for ever; the other numbers as the kind needs (docs/worlds.md)."""
-
-    device: str
-    kind: str
-    for_s: float = 0.0
-    value: float | None = None
-    rate: float | None = None
-    delay_s: float | None = None
-    beams: tuple[int, int] | None = None
-    place: Place = NOWHERE
-
-
-@dataclass(frozen=True, slots=True)
-class SetTopic:
-    """Writes a topic whose writer is `world`."""
-
-    topic: str
-    value: str
-    place: Place = NOWHERE
-
-
-Action = Remove | Put | Carry | FaultAction | SetTopic
-
-
-@dataclass(frozen=True, slots=True)
-class At:
-    """Actions at a time of the run."""
-
-    t_s: float
-    actions: tuple[Action, ...]
-    place: Place = NOWHERE
-
-
-@dataclass(frozen=True, slots=True)
-class When:
-    """Actions when the robot enters an area or terrain (each time it enters; `once`: only the first time)."""
-
-    inside: str
-    once: bool
-    actions: tuple[Action, ...]
     place: Place = NOWHERE
 
 

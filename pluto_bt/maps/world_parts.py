@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from pluto_bt.maps.world import Actor, Area, At, Goal, Line, Marker, RobotStart, Shadow, Shape, Terrain, When, World
+from pluto_bt.maps.script import At, When
+from pluto_bt.maps.world import Actor, Area, Goal, Line, Marker, RobotStart, Shadow, Shape, Terrain, World
 
 
 @dataclass

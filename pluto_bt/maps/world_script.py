@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pluto_bt.maps import fault_table
 from pluto_bt.maps.fields import Fields
-from pluto_bt.maps.world import Action, At, Carry, FaultAction, Put, Remove, SetTopic, When
+from pluto_bt.maps.script import Action, At, Carry, FaultAction, Put, Remove, SetTopic, When
 from pluto_bt.maps.world_ids import Ids
 from pluto_bt.source import Faults, XmlElement, did_you_mean
 

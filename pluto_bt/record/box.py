@@ -79,7 +79,6 @@ class Box:
 
     def __init__(self, file: McapFile, run: Run) -> None:
         self.file, self.run = file, run
-        self.folder: Any = None  # of the file, if it shall last no longer than this object
         self.trees: dict[int, Tree] = {}
         self.result: dict[str, Any] = {}
         self.times_ns: list[int] = []

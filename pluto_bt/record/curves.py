@@ -11,14 +11,13 @@ import numpy as np
 from pluto_bt.blackboard.codes import CommandType, MotionCommand
 from pluto_bt.blackboard.messages import ActuatorState, FloatArray, Pose
 from pluto_bt.record.box import Box
-from pluto_bt.record.entries import STATUS_OF_LETTER, Posted
+from pluto_bt.record.entries import LINKS, STATUS_OF_LETTER, Posted
 from pluto_bt.record.scans import LASER, SCAN, is_level, placed
 from pluto_bt.record.story import leaves
 
 NO_RETURN_M: Final = 79.0  # the lasers of our logs say 80 m and more for nothing met
 POSE, ASKED, GIVEN, DRIVEN = "Localization/Pose", "drive/command", "ATRV2/Drive/Command", "ATRV2/Drive/Raw"
 VELOCITIES: Final = {ASKED: "asked of the drive", GIVEN: "given to the base", DRIVEN: "driven"}
-LINKS: Final = ("motion", "avoidance", "drive", "filter")
 AMENDED_WITHIN_S: Final = 1.0  # a goal so soon after the last one is the same order with other figures
 
 

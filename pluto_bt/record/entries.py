@@ -9,6 +9,7 @@ import msgspec
 RUN, TREE, TICK = "pluto/run", "pluto/tree", "pluto/tick"
 STATUS_OF_LETTER = {"I": "IDLE", "R": "RUNNING", "S": "SUCCESS", "F": "FAILURE", "K": "SKIPPED"}
 WATCHED = "watched"  # the mode of a recording made from outside: topics, but no ticks
+LINKS = ("motion", "avoidance", "drive", "filter")  # of the chain, from above, as a situation names them
 KEYFRAME_EVERY = 100  # ticks: every so often a tick says all and not only what changed
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar, Literal, NoReturn
+from typing import ClassVar, Final, Literal, NoReturn
 
 Severity = Literal["error", "warning"]
 
@@ -34,6 +34,9 @@ class Place:
     line: int = 0
     column: int = 0
     text: str = ""
+
+
+NOWHERE: Final = Place()  # of what no file says
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result
 from pluto_bt.trees.errors import StepError, TickError
 from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
+from pluto_bt.trees.stand_ins import StandIns
 from pluto_bt.trees.tracked import Tracked, letter_of
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
@@ -41,7 +42,7 @@ class Mission:
         self._board = board
         self.ticks = 0
         self._tracked, self._context = tracked, context
-        self._own_steps: dict[int, Callable[[], Result]] = {}
+        self._stand_ins = StandIns(tracked, context)
         self._make_paths_unique()
 
     # -- ticking
@@ -188,32 +189,14 @@ class Mission:
 
         World scripts let leaves fail with it.
         """
-        found = [one for one in self._tracked if not one.node.children and name in (one.plan.name, one.plan.type_name, one.path)]
-        self._context.may_remember = False  # from now on not all follows from the entries
-        for tracked in found:
-            node = tracked.node
-            own = self._own_steps.setdefault(id(node), node.step)
-            node.step = own if step is None else self._begun(node, step)
-        return bool(found)
-
-    def _begun(self, node: Any, step: Callable[[], Result]) -> Callable[[], Result]:
-        def begin() -> Result:
-            self._context.current = node
-            try:
-                return step()
-            except Exception as error:
-                raise StepError(node, told(error)) from error
-
-        return begin
+        return self._stand_ins.replace(name, step)
 
     def watch(self, listen: Callable[[int, str], None]) -> None:
         """Call `listen` (number of the node depth first, what it told its parent) whenever a leaf ends: SUCCESS, FAILURE or SKIPPED.
 
         A status alone does not tell it: a parent that ends in the same tick wipes it away.
         """
-        for number, tracked in enumerate(self._tracked):
-            if not tracked.node.children:
-                tracked.node.step = _watched(number, tracked.node.step, listen)
+        self._stand_ins.watch(listen)
 
     def contract_watch(self) -> ContractWatch | None:
         """A watch over its contracts; None if it has none."""
@@ -233,16 +216,6 @@ class Mission:
             if tracked.path in seen:
                 tracked.path = f"{tracked.path}::{tracked.plan.uid}"
             seen.add(tracked.path)
-
-
-def _watched(number: int, step: Callable[[], Result], listen: Callable[[int, str], None]) -> Callable[[], Result]:
-    def watched() -> Result:
-        result = step()
-        if result is not RUNNING:
-            listen(number, name_of(result))
-        return result
-
-    return watched
 
 
 def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:

@@ -11,13 +11,12 @@ from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 from pluto_bt.blackboard.codes import status_name
-from pluto_bt.record.entries import Link
+from pluto_bt.record.entries import LINKS, Link
 from pluto_bt.record.trail import Trail, Trouble
 from pluto_bt.skills import reasons
 from pluto_bt.trees.contracts import CONTRACT
 from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, cure, meaning, rank
 
-LINKS: Final = ("motion", "avoidance", "drive", "filter")  # from above
 LOCALISATION: Final = "localisation"
 CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up

@@ -83,7 +83,8 @@ def test_a_link_above_that_falls_silent_is_noticed() -> None:
 
 
 def test_blocked_wheels_are_let_go_and_tried_again() -> None:
-    from pluto_bt.maps.world import At, FaultAction, World
+    from pluto_bt.maps.script import At, FaultAction
+    from pluto_bt.maps.world import World
 
     world = World("hall", shapes=hall().shapes, script=(At(3.0, (FaultAction("base", "blocked", for_s=4.0),)),))
     robot = WholeRobot(world, "atrv2", (0.0, 0.0, 0.0), level="filter")

@@ -128,6 +128,14 @@ def test_the_commands_tell_a_run(scenario: Play, mission: str, tmp_path: Path, c
     assert re.search("▶ GoTo  goal=9;9  .● RUNNING", capsys.readouterr().out)
     assert main(["replay", str(file), "--execute"]) == 0
     assert "all identical" in capsys.readouterr().out
+    assert main(["replay", str(file), "--execute", "--mission", "t01_say_hello.xml"]) == 1, "a shipped mission by its name, as everywhere"
+    assert "differs from " in capsys.readouterr().out
+    assert main(["replay", str(file), "--mission", "t01_say_hello.xml"]) == 2
+    assert "--mission goes with --execute or --contracts" in capsys.readouterr().err
+    (tmp_path / "mine.xml").write_text("<root/>", encoding="utf-8")
+    for command in ("repair", "totest", "plot"):
+        assert main([command, str(file), "--output", str(tmp_path / "mine.xml")]) == 2, command
+    assert (tmp_path / "mine.xml").read_text(encoding="utf-8") == "<root/>", "a slip of the hand must not cost a mission"
     file.write_bytes(file.read_bytes()[:-9000])
     assert main(["replay", str(file), "--execute"]) == 0
     assert "cut short" in capsys.readouterr().err

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pluto_bt.behaviours.destinations import Destination, Destinations
-from pluto_bt.maps.world import FaultAction, World
+from pluto_bt.maps.script import FaultAction
+from pluto_bt.maps.world import World
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
 from pluto_bt.source.xml_reader import XmlAttribute
 from pluto_bt.trees.loader.expand import Plan

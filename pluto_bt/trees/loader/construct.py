@@ -30,8 +30,8 @@ from pluto_bt.trees.tracked import Tracked
 @contextmanager
 def _classes_looked_at_once() -> Iterator[None]:
     """py_trees looks at every attribute of a class whenever one is made of it, four fifths of its time; inside, it looks once a class."""
-    look = ports._ports_class_is_abstract
-    if hasattr(look, "cache_info"):  # another mission is being built
+    look = getattr(ports, "_ports_class_is_abstract", None)  # its own affair: another version may do without
+    if look is None or hasattr(look, "cache_info"):  # the latter: another mission is being built
         yield
         return
     ports._ports_class_is_abstract = cache(look)
