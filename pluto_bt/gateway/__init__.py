@@ -2,6 +2,7 @@
 
 ```
  clients ⇄ Framer ⇄ Connection ⇄ Session ⇄ Hub      the gateway process: bytes, XML, subscriptions, slow readers
+ clients ◄ Burst ◄ Outlets ◄ Lane ◄ Channels ◄ Hub      values that are the same for all, past all queues
                                            ⇅ wire    one Unix socket, msgpack frames, latest values only
                               GatewayLink ⇄ Desk ⇄ RobotPort      the executive's process: lease, runs, outcomes, stop
 ```

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pluto_bt.gateway.burst import Burst, Ints, Writes, fastest
@@ -174,6 +174,7 @@ class Numbers:
         return np.full(len(fds), len(line), np.int32)
 
 
+@settings(deadline=None)
 @given(st.lists(st.one_of(st.just("come"), st.just("hold"), st.just("send"), st.integers(0, 30)), max_size=80))
 def test_a_number_that_is_used_again_never_gets_what_was_meant_for_another(steps: list[str | int]) -> None:
     sockets = Numbers()

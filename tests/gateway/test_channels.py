@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pluto_bt.blackboard import messages as m
@@ -134,6 +134,7 @@ class Client:
                 self.heard.append((int(re.search(rb'seq="(\d+)"', line)[1]), int(lost[1]) if lost else 0))  # type: ignore[index]
 
 
+@settings(deadline=None)
 @given(
     st.sampled_from([0.0, 5.0, 10.0, 40.0]),
     st.lists(st.tuples(st.integers(1, 3), st.booleans(), st.booleans()), min_size=5, max_size=60),
