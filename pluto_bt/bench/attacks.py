@@ -101,8 +101,9 @@ def _stops(live: Live) -> Iterator[BenchRow]:
                 _drive_on(operator)
                 stopped_ns = wall_ns()
                 passer.request("stop")
-                zero_ns = _stood_ns(live, stopped_ns)
-                delays_ms.append((zero_ns - stopped_ns) / 1e6)
+                zero_ns = _stood_ns(live)
+                if zero_ns >= stopped_ns:  # else something had stopped it just before
+                    delays_ms.append((zero_ns - stopped_ns) / 1e6)
     finally:
         flood.kill()
         flood.communicate()
@@ -125,12 +126,12 @@ def _drive_on(operator: Client) -> None:
     raise TimeoutError("the robot does not move")
 
 
-def _stood_ns(live: Live, after_ns: int) -> int:
-    """When the base was told to stand, after that moment."""
+def _stood_ns(live: Live) -> int:
+    """When the base was told to stand, as it is now."""
     pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
     while wall_ns() < until_ns:
-        zero_ns = int(live.tells()["zero_ns"])
-        if zero_ns >= after_ns:
-            return zero_ns
+        told = live.tells()
+        if told["stands"]:
+            return int(told["zero_ns"])
         wait(pause, 0.01)
     raise TimeoutError("the robot does not stop")
