@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -161,3 +162,14 @@ def test_any_text_is_either_read_or_refused_with_a_position(text: str) -> None:
 def test_arithmetic_is_that_of_doubles(a: float, b: float, sign: str) -> None:
     expected = {"+": a + b, "-": a - b, "*": a * b, "/": a / b}[sign]
     assert run(f"x {sign} y", x=a, y=b)[0] == expected
+
+
+def test_long_scripts_are_not_kept() -> None:
+    before_mb = rss_mb()
+    for number in range(40):
+        parse_script("; ".join(f"x{number} := {i}" for i in range(600)))  # half a megabyte of terms each
+    assert rss_mb() - before_mb < 8.0
+
+
+def rss_mb() -> float:
+    return int(Path("/proc/self/status").read_text(encoding="ascii").split("VmRSS:")[1].split()[0]) / 1024
