@@ -6,13 +6,13 @@ import json
 import subprocess
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pluto_bt.bench.attacker import CROWDS, STREAMS, begin
 from pluto_bt.bench.fanout import process_of
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import NS, wait, wall_ns
@@ -86,8 +86,7 @@ def pings_ms(live: Live, polite: Client, attack: str, seconds: float) -> list[fl
 def settled_mb(live: Live, polite: Client) -> float:
     """Memory of the gateway's process when those who attacked have been let go."""
     pings_ms(live, polite, "burn", SETTLE_S)
-    status = Path(f"/proc/{live.tells()['pid']}/status").read_text(encoding="ascii")
-    return int(status.split("VmRSS:")[1].split()[0]) / 1024
+    return resident_mb(int(live.tells()["pid"]))
 
 
 # stops ---------------------------------------------------------------------------------------------------------------

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.script import ScriptSyntaxError, parse_script
 from pluto_bt.trees.script.terms import Env
@@ -165,11 +165,7 @@ def test_arithmetic_is_that_of_doubles(a: float, b: float, sign: str) -> None:
 
 
 def test_long_scripts_are_not_kept() -> None:
-    before_mb = rss_mb()
+    before_mb = resident_mb()
     for number in range(40):
         parse_script("; ".join(f"x{number} := {i}" for i in range(600)))  # half a megabyte of terms each
-    assert rss_mb() - before_mb < 8.0
-
-
-def rss_mb() -> float:
-    return int(Path("/proc/self/status").read_text(encoding="ascii").split("VmRSS:")[1].split()[0]) / 1024
+    assert resident_mb() - before_mb < 8.0
