@@ -6,13 +6,13 @@ import json
 import subprocess
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from pluto_bt.bench.attacker import CROWDS, STREAMS, begin
 from pluto_bt.bench.fanout import process_of
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import NS, wait, wall_ns
@@ -86,8 +86,7 @@ def pings_ms(live: Live, polite: Client, attack: str, seconds: float) -> list[fl
 def settled_mb(live: Live, polite: Client) -> float:
     """Memory of the gateway's process when those who attacked have been let go."""
     pings_ms(live, polite, "burn", SETTLE_S)
-    status = Path(f"/proc/{live.tells()['pid']}/status").read_text(encoding="ascii")
-    return int(status.split("VmRSS:")[1].split()[0]) / 1024
+    return resident_mb(int(live.tells()["pid"]))
 
 
 # stops ---------------------------------------------------------------------------------------------------------------
@@ -101,8 +100,9 @@ def _stops(live: Live) -> Iterator[BenchRow]:
                 drive_on(operator)
                 stopped_ns = wall_ns()
                 passer.request("stop")
-                zero_ns = stood_ns(live, stopped_ns)
-                delays_ms.append((zero_ns - stopped_ns) / 1e6)
+                zero_ns = stood_ns(live)
+                if zero_ns >= stopped_ns:  # else something had stopped it just before
+                    delays_ms.append((zero_ns - stopped_ns) / 1e6)
     finally:
         flood.kill()
         flood.communicate()
@@ -125,12 +125,12 @@ def drive_on(operator: Client) -> None:
     raise TimeoutError("the robot does not move")
 
 
-def stood_ns(live: Live, after_ns: int) -> int:
-    """When the base was told to stand, after that moment."""
+def stood_ns(live: Live) -> int:
+    """When the base was told to stand, as it is now."""
     pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
     while wall_ns() < until_ns:
-        zero_ns = int(live.tells()["zero_ns"])
-        if zero_ns >= after_ns:
-            return zero_ns
+        told = live.tells()
+        if told["stands"]:
+            return int(told["zero_ns"])
         wait(pause, 0.01)
     raise TimeoutError("the robot does not stop")

@@ -2,8 +2,8 @@
 
 `python -m pluto_bt.bench.live_robot [KEYS] [NAME=VALUE …]`, with parameters as `pluto run --set` takes them, prints the gateway's port; with a file
 of keys also that of the ssh door and that of the web console. For each line it reads it prints, as JSON, how late the ticks have been since the
-last line (ms), the gateway's process, the mission's state, when the base was last told to stand (wall, ns), and the events so far; it ends with
-its input.
+last line (ms), the gateway's process, the mission's state, when the base was last told to stand (wall, ns)
+and whether it still is, and the events so far; it ends with its input.
 """
 
 from __future__ import annotations
@@ -39,15 +39,15 @@ class Ear:
 
     def __init__(self, base: Any) -> None:
         self._own = base.drive
-        self._stands = True
+        self.stands = True
         self.zero_ns = 0
         base.drive = self._drive
 
     def _drive(self, speed_mps: float, turn_rate_radps: float) -> None:
         stands = speed_mps == turn_rate_radps == 0.0
-        if stands and not self._stands:
+        if stands and not self.stands:
             self.zero_ns = wall_ns()
-        self._stands = stands
+        self.stands = stands
         self._own(speed_mps, turn_rate_radps)
 
 
@@ -74,7 +74,7 @@ def main(words: list[str]) -> None:
         state = mission.value.state if mission is not None and isinstance(mission.value, MissionState) else ""
         p50, p999, worst = np.percentile(late_ms, [50.0, 99.9, 100.0])
         told = {"late_ms": late_ms, "ticks": len(late_ms), "p50_ms": p50, "p999_ms": p999, "worst_ms": worst, "pid": gateway.pid, "mission": state}  # type: ignore[attr-defined]
-        print(json.dumps(told | {"zero_ns": ear.zero_ns, "events": [event.code for event in events]}), flush=True)
+        print(json.dumps(told | {"zero_ns": ear.zero_ns, "stands": ear.stands, "events": [event.code for event in events]}), flush=True)
     runner.loop.interrupt()
     thread.join()
 

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.runner import make_runner
 from pluto_bt.system import System
 
 SAMPLES_S = (60.0, 600.0, 1800.0, 3590.0)
-
-
-def resident_mb() -> float:
-    """Memory of this process in MB."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * 4096 / 1e6
 
 
 def run() -> list[BenchRow]:

@@ -102,6 +102,9 @@ class SilentRobot:
         """Refused."""
         self._refuse()
 
+    def prepare_mission(self, op: str, name: str, text: str) -> None:
+        """Nothing to read."""
+
     def mission_text(self, name: str) -> str:
         """Refused."""
         self._refuse()

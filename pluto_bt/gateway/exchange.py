@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from functools import partial
+from typing import TypeAlias
 
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.audit import Audit
@@ -11,7 +13,8 @@ from pluto_bt.gateway.desk import Desk
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
-from pluto_bt.gateway.turns import Turns
+from pluto_bt.gateway.requests import MissionOp
+from pluto_bt.gateway.turns import Turns, line_of
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamped, Up, Watch, Welcome, pack_value
 
 REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
@@ -19,13 +22,16 @@ REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
 QUEUE = 16 * 1024
 HEARTBEAT_S = 0.25
 _EVENTS = "events"
+Aside: TypeAlias = Callable[[Callable[[], None]], object]
 
 
 class Exchange:
     """Joins the desk to a carrier. `receive` is thread-safe and does stops at once; `step` does everything else."""
 
-    def __init__(self, port: RobotPort, send: Callable[[Down], None], audit: Audit | None = None) -> None:
-        """`send` must be thread-safe and never block."""
+    def __init__(
+        self, port: RobotPort, send: Callable[[Down], None], audit: Audit | None = None, aside: Aside = lambda work: work()
+    ) -> None:
+        """`send` must be thread-safe and never block. `aside` does work that takes long: at once, or in a thread that does one after the other."""
         self._port = port
         self._send = send
         self._audit = audit or Audit(None)
@@ -33,6 +39,8 @@ class Exchange:
         self._desk = Desk(port, self._answer, self._audit)
         self._inbox: deque[tuple[Up, int]] = deque()  # the one thing that both threads touch
         self._queue = Turns()
+        self._aside = aside
+        self._prepared: deque[tuple[Ask, int]] = deque()
         self._watched: tuple[str, ...] = ()
         self._sent_seq: dict[str, int] = {}
         self._event_seq = 0
@@ -69,20 +77,39 @@ class Exchange:
         while self._inbox and len(self._queue) < QUEUE:
             self._queue.add(self._inbox.popleft())
         self._answers, until_s = 0, self._port.now_s() + STEP_S
-        for _ in range(min(len(self._queue), REQUESTS_A_STEP)):
-            if not has_room() or self._answers > ANSWERS_A_STEP or self._port.now_s() > until_s:
+        self._answer_prepared(now_s)
+        for _ in range(REQUESTS_A_STEP):
+            if not self._queue.is_ready or not has_room() or self._answers > ANSWERS_A_STEP or self._port.now_s() > until_s:
                 break  # answers that nobody takes must not pile up here, nor the rest of the step wait
             self._handle(*self._queue.next(), now_s)
         self._desk.step(now_s)
         self._audit.step()
 
     def _handle(self, frame: Up, stops: int, now_s: float) -> None:
-        if isinstance(frame, Ask):
+        if isinstance(frame, Ask) and isinstance(frame.request, MissionOp) and frame.request.op in ("load", "check"):
+            self._queue.hold(line_of(frame))
+            self._aside(partial(self._prepare, frame, frame.request, stops))
+            self._answer_prepared(now_s)
+        elif isinstance(frame, Ask):
             self._desk.handle(frame, stops, now_s)
         elif isinstance(frame, Gone):
             self._desk.gone(frame.client)
         elif isinstance(frame, Watch):
             self._watch(frame.topics)
+
+    def _prepare(self, ask: Ask, request: MissionOp, stops: int) -> None:
+        """Read a document, in whatever thread."""
+        try:
+            self._port.prepare_mission(request.op, request.name, request.text)
+        finally:
+            self._prepared.append((ask, stops))
+
+    def _answer_prepared(self, now_s: float) -> None:
+        """What has been read is answered, and who asked for it has his turns again."""
+        while self._prepared:
+            ask, stops = self._prepared.popleft()
+            if self._queue.free(line_of(ask)):  # else the gateway through which he asked is no more
+                self._desk.handle(ask, stops, now_s)
 
     def _answer(self, answer: Answer) -> None:
         self._answers += 1

@@ -52,8 +52,9 @@ class RunState(msgspec.Struct, frozen=True):
 class RobotPort(Protocol):
     """The robot as the gateway sees it.
 
-    `stop` and `estop` are called from the link's own thread, at any moment: they must be thread-safe and return at once. All other
-    methods are called inside `GatewayLink.step`. `source` names the client for logs. Methods that can say no raise `RefusedError`.
+    `stop` and `estop` are called from the link's own thread, at any moment: they must be thread-safe and return at once. `prepare_mission` may
+    be called from a thread of its own. All other methods are called inside `GatewayLink.step`. `source` names the client for logs. Methods
+    that can say no raise `RefusedError`.
     """
 
     @property
@@ -107,6 +108,9 @@ class RobotPort(Protocol):
 
     def mission(self, op: str, name: str, text: str, source: str) -> None:
         """Do `load`, `check`, `start`, `pause`, `resume` or `abort`. Raises: RefusedError, with every fault of a document."""
+
+    def prepare_mission(self, op: str, name: str, text: str) -> None:
+        """Read the document of a `load` or `check`, which takes long, so that `mission` with the same words is quick. Thread-safe; never raises."""
 
     def mission_text(self, name: str) -> str:
         """The document of the mission of that name, of the one at work if it is "". Raises: RefusedError."""

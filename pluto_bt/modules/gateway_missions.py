@@ -31,6 +31,7 @@ class GatewayMissions:
     def __init__(self, context: Context) -> None:
         self._system, self._board, self._latch = context.system, context.board, context.latch
         self._loaded: Mission | None = None
+        self._prepared: dict[tuple[str, str, str], Mission | RefusedError | None] = {}  # by op, name and text
 
     def state(self) -> MissionState:
         """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
@@ -57,7 +58,7 @@ class GatewayMissions:
         """Load, check, start, pause, resume, abort. Raises: RefusedError; a bad load leaves all as it was."""
         core = self._system.executive.core
         if op in ("load", "check"):
-            loaded = self._named(name, text)
+            loaded = self._read(op, name, text)
             self._loaded = loaded if op == "load" else self._loaded
         elif op == "start":
             self.require_idle("abort it first")
@@ -75,6 +76,23 @@ class GatewayMissions:
             core.pause(OPERATOR_STOP) if op == "pause" else self._system.operator_resume()
         else:
             raise RefusedError("invalid", f'mission op="{op}" is not offered')
+
+    def prepare(self, op: str, name: str, text: str) -> None:
+        """Read a document in whatever thread; the next `act` with the same words takes what came of it."""
+        try:
+            mission = self._named(name, text)
+            self._prepared[op, name, text] = mission if op == "load" else None
+        except RefusedError as refusal:
+            self._prepared[op, name, text] = refusal
+
+    def _read(self, op: str, name: str, text: str) -> Mission | None:
+        """The mission, None if it was only to be checked. Raises: RefusedError."""
+        if (op, name, text) not in self._prepared:
+            return self._named(name, text)
+        prepared = self._prepared.pop((op, name, text))
+        if isinstance(prepared, RefusedError):
+            raise prepared
+        return prepared
 
     def single(self, node: str, ports: Mapping[str, str]) -> Mission:
         """A mission of this one node or library tree. Raises: RefusedError."""

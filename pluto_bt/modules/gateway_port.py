@@ -156,6 +156,10 @@ class GatewayPort:
             self._touch(mission=op)
         self._missions.act(op, name, text)
 
+    def prepare_mission(self, op: str, name: str, text: str) -> None:
+        """Read a document beside the work of the link."""
+        self._missions.prepare(op, name, text)
+
     def tree_text(self, format: str) -> str:
         """The tree drawn."""
         from pluto_bt.trees.dump import dump

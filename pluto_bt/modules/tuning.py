@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +13,13 @@ import msgspec
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.replies import Param, ParamsState
 from pluto_bt.gateway.requests import Params
+from pluto_bt.gateway.subscriptions import matches
 from pluto_bt.modules.live_parameters import NAMES, broken_rules, value_of
 from pluto_bt.modules.robot_file import RobotFile, overlay_names
 from pluto_bt.runtime.parameters import Parameter, build, describe, override, shown
 from pluto_bt.source import Fault, Faults, Place
 
+STRANGE_TOLD = 20
 CODES = {"unknown-parameter": "unknown-param", "bad-setting": "invalid"}
 _OUT_OF_RANGE = re.compile(r"expected [a-z]+ (of length )?[<>]=? ", re.IGNORECASE)  # msgspec: of the right type, but beyond its range
 
@@ -91,11 +92,16 @@ class Tuning:
         faults, refusals = Faults(), []
         table: dict[str, Any] = msgspec.to_builtins(self._robot)
         known = {row.name for row in self._rows}
+        strange = [name for name in values if name not in known]
+        untold = frozenset(strange[STRANGE_TOLD:])  # to look for what each of thousands may mean would take seconds
+        values = {name: text for name, text in values.items() if name not in untold}
         for name in sorted(known & values.keys() - NAMES):
             refusals.append(RefusedError("read-only", f'"{name}" cannot be changed while the robot runs; start it with --set {name}=VALUE'))
         override(table, [f"{name}={text.strip()}" for name, text in values.items() if name in NAMES or name not in known], RobotFile, faults)
         robot = build(RobotFile, table, lambda path: Place(".".join(path)), faults)
         refusals += [_refusal(fault) for fault in faults.in_order()]
+        if untold:
+            refusals.append(RefusedError("unknown-param", f"{len(untold)} more parameters are unknown"))
         if robot is not None:
             for rule in broken_rules(robot, frozenset(values)):
                 found = f"{shown(value_of(robot, rule.low))} > {shown(value_of(robot, rule.high))}"
@@ -128,7 +134,7 @@ class Tuning:
         return ParamsState(rev=self.rev, confirm_s=self._left_s(now_s), rows=rows)
 
     def _state(self, pattern: str, now_s: float) -> ParamsState:
-        rows = tuple(self._row(row) for row in self._rows if fnmatchcase(row.name, pattern))
+        rows = tuple(self._row(row) for row in self._rows if matches(pattern, row.name))
         if pattern and not rows:
             raise RefusedError("unknown-param", f'unknown parameter "{pattern}"; <params/> shows all')
         return ParamsState(rev=self.rev, confirm_s=self._left_s(now_s), rows=rows)

@@ -26,6 +26,7 @@ class FakeRobot:
         self.latched: str | None = None
         self.mission_now = m.MissionState(0.0)
         self.on_stop: list[object] = []
+        self.on_prepare = lambda text: None
         self.rev = 1
         self.items: list[Item] = []
 
@@ -94,6 +95,9 @@ class FakeRobot:
 
     def mission(self, op: str, name: str, text: str, source: str) -> None:
         self.did.append(("mission", op, name, text))
+
+    def prepare_mission(self, op: str, name: str, text: str) -> None:
+        self.on_prepare(text)
 
     def tree_text(self, format: str) -> str:
         return "Sequence\n  GoTo <3;4>"

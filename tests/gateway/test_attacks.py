@@ -10,12 +10,12 @@ import json
 import socket
 import threading
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from pluto_bt.bench.attacker import CROWDS, STREAMS, begin
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.client import GatewayError
 from pluto_bt.gateway.replies import Item
@@ -61,8 +61,7 @@ class Target(Running):
         return told
 
     def rss_mb(self) -> float:
-        status = Path(f"/proc/{self.link.pid}/status").read_text(encoding="ascii")
-        return int(status.split("VmRSS:")[1].split()[0]) / 1024
+        return resident_mb(self.link.pid)
 
 
 @pytest.fixture(scope="module")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.gateway.framing import Framer, FramingError, Message
 from pluto_bt.gateway.limits import Limits
 
@@ -141,14 +140,10 @@ NAMING = ["<n{name}><!-- --></n{name}>", '<ping n{name}="&amp;"/>', '<ping xmlns
 
 @pytest.mark.parametrize("form", NAMING)
 def test_new_names_leave_nothing_behind(form: str) -> None:
-    before_mb = rss_mb()
+    before_mb = resident_mb()
     for number in range(500):
         run([form.format(name=f"{number}." + "x" * 20_000).encode()])  # 20 MB of names
-    assert rss_mb() - before_mb < 5.0
-
-
-def rss_mb() -> float:
-    return int(Path("/proc/self/status").read_text(encoding="ascii").split("VmRSS:")[1].split()[0]) / 1024
+    assert resident_mb() - before_mb < 5.0
 
 
 def test_strangers_are_told_what_this_port_is() -> None:

@@ -46,6 +46,21 @@ def test_every_parameter_is_shown_with_unit_and_range() -> None:
     assert {row.name for row in state.rows if row.live} == NAMES
 
 
+def test_only_the_last_character_of_a_name_may_be_a_star() -> None:
+    assert [row.name for row in Desk().ask(name="avoid.margin*").rows] == ["avoid.margin_m"]
+    for pattern in ("*margin_m", "avoid.[m]argin_m", "avoid.?argin_m"):
+        with pytest.raises(RefusedError, match="unknown parameter"):
+            Desk().ask(name=pattern)
+
+
+def test_of_thousands_of_unknown_names_the_first_are_told() -> None:
+    with pytest.raises(RefusedError) as refused:
+        Desk().set(**{f"avoid__margn_{number}": "1" for number in range(2000)})
+    told = [refused.value, *refused.value.more]
+    assert {one.code for one in told} == {"unknown-param"} and len(told) == 21
+    assert told[-1].text == "1980 more parameters are unknown"
+
+
 @pytest.mark.parametrize("platform", SHIPPED)
 def test_shipped_robots_keep_the_rules(platform: str) -> None:
     robot = load_robot_file(platform)

@@ -182,3 +182,22 @@ def test_bad_addresses_are_faults() -> None:
     assert parse_address("[::1]:80") == Address("::1", 80)
     assert parse_address(":7501") == Address("127.0.0.1", 7501)
     assert parse_address("localhost") == Address("localhost", 7500)
+
+
+def test_a_large_document_holds_up_nobody_but_its_sender(running: Running) -> None:
+    begun, may_end = threading.Event(), threading.Event()
+
+    def read_long(text: str) -> None:
+        begun.set()
+        may_end.wait(WAIT_S)
+
+    running.robot.on_prepare = read_long  # type: ignore[assignment]
+    with running.client(name="anna") as anna, running.client(name="ben") as ben:
+        anna.send_raw(b'<mission op="load" id="a"><root/></mission><mission op="start" id="b"/>')
+        assert begun.wait(WAIT_S)
+        assert ben.lease("acquire", ttl_s=30).get("mine") == "true"
+        assert not [deed for deed in running.robot.did if deed[0] == "mission"]
+        ben.lease("release")
+        may_end.set()
+        assert [anna.receive(WAIT_S).get("id") for _ in "ab"] == ["a", "b"]  # type: ignore[union-attr]
+    assert [deed[1] for deed in running.robot.did if deed[0] == "mission"] == ["load", "start"]

@@ -39,6 +39,19 @@ def test_nobody_answers_the_questions_of_who_is_gone() -> None:
     assert order(ask(1, "a"), Gone(1), ask(2, "x")) == ["gone 1", "2x"]
 
 
+def test_a_line_that_is_held_waits_until_it_is_free() -> None:
+    turns = Turns()
+    for frame in (ask(1, "a"), ask(1, "b"), ask(2, "x")):
+        turns.add((frame, 0))
+    assert shown(turns.next()[0]) == "1a"
+    turns.hold("#1")
+    turns.add((ask(1, "c"), 0))
+    turns.add((Gone(1), 0))
+    assert [shown(turns.next()[0]), turns.is_ready, len(turns)] == ["2x", False, 1], "his questions are forgotten with him"
+    assert turns.free("#1") and not turns.free("#1")
+    assert [shown(turns.next()[0]), turns.is_ready] == ["gone 1", False]
+
+
 def test_they_can_all_be_sent_home() -> None:
     turns = Turns()
     turns.add((ask(1, "a"), 0))

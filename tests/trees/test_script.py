@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from pluto_bt.bench.resident import resident_mb
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.script import ScriptSyntaxError, parse_script
 from pluto_bt.trees.script.terms import Env
@@ -161,3 +162,10 @@ def test_any_text_is_either_read_or_refused_with_a_position(text: str) -> None:
 def test_arithmetic_is_that_of_doubles(a: float, b: float, sign: str) -> None:
     expected = {"+": a + b, "-": a - b, "*": a * b, "/": a / b}[sign]
     assert run(f"x {sign} y", x=a, y=b)[0] == expected
+
+
+def test_long_scripts_are_not_kept() -> None:
+    before_mb = resident_mb()
+    for number in range(40):
+        parse_script("; ".join(f"x{number} := {i}" for i in range(600)))  # half a megabyte of terms each
+    assert resident_mb() - before_mb < 8.0

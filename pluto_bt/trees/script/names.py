@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import lru_cache
 from typing import Literal, NamedTuple
 
 from pluto_bt.trees.script.parser import parse_script
@@ -20,7 +19,6 @@ class NameUse(NamedTuple):
     how: How
 
 
-@lru_cache(maxsize=4096)
 def names_used(text: str) -> tuple[NameUse, ...]:
     """All uses in a script; both branches of `?:` count as run. Raises ScriptSyntaxError."""
     return tuple(use for statement in parse_script(text).statements for use in _uses(statement))

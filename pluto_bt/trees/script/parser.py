@@ -18,6 +18,7 @@ from pluto_bt.trees.script.tokens import ScriptSyntaxError, Token, tokens_of
 
 MAX_DEPTH: Final = 50
 MAX_CHARACTERS: Final = 100_000
+KEPT_CHARACTERS: Final = 1000
 ASSIGNMENTS: Final = (":=", "=", "+=", "-=", "*=", "/=")
 COMPARISONS: Final = ("==", "!=", "<", ">", "<=", ">=")
 LEVELS: Final = (("||",), ("&&",), COMPARISONS, ("|", "^"), ("&",), ("+", "-", ".."), ("*", "/"))
@@ -39,9 +40,18 @@ class Program:
         return value
 
 
-@lru_cache(maxsize=4096)
 def parse_script(text: str) -> Program:
     """The program of a script. Raises ScriptSyntaxError with the position."""
+    return _kept(text) if len(text) <= KEPT_CHARACTERS else _program(text)
+
+
+@lru_cache(maxsize=512)
+def _kept(text: str) -> Program:
+    """A program is fifty times as large as its text, and strangers may have theirs checked: only some short ones are kept."""
+    return _program(text)
+
+
+def _program(text: str) -> Program:
     if text == "":
         return Program(text, ())
     if len(text) > MAX_CHARACTERS:
