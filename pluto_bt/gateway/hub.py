@@ -101,6 +101,8 @@ class Hub:
         self.batch_s = now_s
         touched: dict[int, None] = {}
         for value in frame.values:
+            if value.topic not in self._watched:  # it was on its way when the last listener left; nothing would make it new again
+                continue
             newest = Newest(value.topic, value.seq, frame.now_s - value.written_s, now_s, value.payload)
             self._hand_out(self._channels.offer(newest, now_s), touched)
         if frame.events:

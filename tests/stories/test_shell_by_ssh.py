@@ -49,7 +49,7 @@ class Robot:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / "id"], check=True)
+        subprocess.run(["ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-C", "anna@desk", "-f", folder / "id"], check=True)
         subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", "key.pem", "-out", "cert.pem", "-days", "1",
                         "-subj", "/CN=robot"], cwd=folder, check=True, capture_output=True)  # fmt: skip
         (folder / "people.toml").write_text(f'[anna]\ntoken = "{TOKEN}"\nscopes = ["watch", "drive"]\n')
@@ -99,6 +99,7 @@ def test_a_morning_round_by_ssh(robot: Robot) -> None:
         assert line in done.stdout, done.stdout
     assert robot.by_ssh("stop").stdout == "stopped\n"
     assert "operator-stop" in robot.by_ssh("status").stdout
+    assert "shell anna@desk stopped the robot" in robot.by_ssh("why").stdout, "the door's own token has no name of its own"
 
     assert "unknown node" in robot.by_ssh("do", "GoTu", "goal=1,2").stderr
 

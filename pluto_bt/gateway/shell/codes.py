@@ -13,7 +13,3 @@ class UsageError(PlutoError):
 
 class FailedError(PlutoError):
     """The command was understood, and could not be done."""
-
-
-class LeaveError(PlutoError):
-    """The person wants to leave."""
