@@ -29,14 +29,16 @@ def _bad(text: str, code: LinkStatus = LinkStatus.LASER_SLOW_STOP, word: str = r
 class ScanWatch:
     """Looks at each scan once; `verdict` tells at any moment."""
 
-    def __init__(self, laser: Laser, stale_s: float, holes: float) -> None:
-        """`stale_s`: how old the newest scan may be, 0 = the laser's delay and 1.25 periods; `holes`: the share of beams that may tell nothing."""
-        self._laser = laser
+    def __init__(self, laser: Laser, stale_s: float, holes: float, good_in_a_row: int = GOOD_IN_A_ROW) -> None:
+        """`stale_s`: how old the newest scan may be, 0 = the laser's delay and 1.25 periods; `holes`: the share of beams that may tell nothing;
+        `good_in_a_row`: 1 for who may look more seldom than scans come.
+        """
+        self._laser, self._enough = laser, good_in_a_row
         self.tune(stale_s, holes)
         self._last: LaserScan | None = None
         self._anchors: list[Planar | None] = [None, None]  # where the robot was when the content of each half last changed
         self._fault = _bad("no scan yet")
-        self._good_in_a_row = GOOD_IN_A_ROW - 1  # the first scan of a run needs no other
+        self._good_in_a_row = good_in_a_row - 1  # the first scan of a run needs no other
 
     def tune(self, stale_s: float, holes: float) -> None:
         """These limits count from now on."""
@@ -53,7 +55,7 @@ class ScanWatch:
             self._fault, self._good_in_a_row = fault, 0
             return False
         self._good_in_a_row += 1
-        if self._good_in_a_row >= GOOD_IN_A_ROW:
+        if self._good_in_a_row >= self._enough:
             self._fault = ALL_WELL
         elif self._fault == ALL_WELL:
             self._fault = _bad("scans come too seldom")

@@ -51,7 +51,8 @@ class Sight:
         """As after the start."""
         self._obstacles.forget()
         self._scan: LaserScan | None = None
-        self._watch = ScanWatch(self.laser, self.parameters.laser_stale_s, self.parameters.laser_holes) if self.laser is not None else None
+        p = self.parameters
+        self._watch = ScanWatch(self.laser, p.laser_stale_s, p.laser_holes, good_in_a_row=1) if self.laser is not None else None
         self._sonar: SonarState | None = None
         self._sonar_is_good = False
 

@@ -31,3 +31,27 @@ def test_the_same_scan_again_is_frozen_only_if_the_robot_turned(heading_rad: flo
         sight.look(ScanView(LaserScan(stamp_s, -math.pi / 2, math.pi / 180, RANGES_M, 181), at), None, at, True, stamp_s + 0.1)
     verdict = sight.laser_fault(0.3)
     assert (verdict == ALL_WELL) == is_trusted and (is_trusted or verdict.reason == reasons.LASER_STALE)
+
+
+def see(sight: Sight, stamp_s: float, ranges_m: np.ndarray, x_m: float) -> None:
+    at = (x_m, 0.0, 0.0)
+    sight.look(ScanView(LaserScan(stamp_s, -math.pi / 2, math.pi / 180, read_only(ranges_m), len(ranges_m)), at), None, at, True, stamp_s + 0.1)
+
+
+@pytest.mark.parametrize("half", [slice(None, 90), slice(90, None)], ids=["right", "left"])
+def test_a_half_that_stays_the_same_although_the_robot_drives_is_not_trusted(half: slice) -> None:
+    sight = Sight(ATRV2, AvoidParameters(), outline_of(ATRV2.body.outline_m))
+    rng = np.random.default_rng(1)
+    for k in range(4):
+        ranges = 3.0 + rng.normal(0.0, 0.01, 181)
+        ranges[half] = RANGES_M[half]
+        see(sight, 0.2 * k, ranges, 0.1 * k)
+    assert sight.laser_fault(0.7).reason == reasons.LASER_STALE
+
+
+def test_avoidance_that_looks_once_a_second_may_drive_the_stop_filter_is_stricter() -> None:
+    sight, rng = Sight(ATRV2, AvoidParameters(), outline_of(ATRV2.body.outline_m)), np.random.default_rng(1)
+    for k in range(4):
+        see(sight, 1.0 * k, 3.0 + rng.normal(0.0, 0.01, 181), 0.1 * k)
+        assert sight.laser_fault(k + 0.3) == ALL_WELL
+        assert sight.laser_fault(k + 0.9).reason == reasons.LASER_STALE
