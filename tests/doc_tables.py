@@ -50,12 +50,12 @@ def table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 def _types(builtin: bool, *kinds: str, of_nav2: bool = False) -> list[NodeType]:
     found = [node for node in node_types().values() if node.builtin is builtin and node.kind in kinds and _is_of_nav2(node) is of_nav2]
-    of_others = [node for node in found if not builtin and not node.make.__module__.startswith("pluto_bt.")]  # those of other tests
+    of_others = [node for node in found if not node.is_ours]  # those of other tests
     return sorted((node for node in found if node not in of_others), key=lambda node: node.name)
 
 
 def _is_of_nav2(node: NodeType) -> bool:
-    return node.make.__module__.startswith(("pluto_bt.behaviours.nav2", "pluto_bt.trees.nav2"))
+    return bool(node.missing) or node.make.__module__.startswith(("pluto_bt.behaviours.nav2", "pluto_bt.trees.nav2"))
 
 
 def _port(port: PortModel) -> str:

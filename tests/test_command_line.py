@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from pluto_bt.commands import extras
 from pluto_bt.commands.files import package_root
+from pluto_bt.source import Faults
 
 OLD_LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
 
@@ -66,3 +68,16 @@ def test_help_imports_nothing_heavy_and_a_refusal_no_compiler(tmp_path: Path) ->
         found = done.stderr.splitlines()[-1].split()
         assert found[0] == code
         assert not set(never) & set(found)
+
+
+def test_an_option_whose_libraries_are_not_there_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extras, "find_spec", lambda module: None if module in ("zmq", "asyncssh", "prompt_toolkit") else module)
+    faults = Faults()
+    assert extras.need("record", "--record run.mcap", faults)
+    assert not extras.need("groot", "--groot", faults)
+    assert not extras.need("shell", "--ssh", faults)
+    said = [(fault.file, fault.code, fault.message, fault.mend) for fault in faults.in_order()]
+    assert said == [
+        ("--groot", "not-installed", "the library pyzmq is not installed", "pip install 'pluto_bt[groot]'"),
+        ("--ssh", "not-installed", "the libraries asyncssh and prompt_toolkit are not installed", "pip install 'pluto_bt[shell]'"),
+    ]

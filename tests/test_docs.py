@@ -91,8 +91,7 @@ def test_a_page_names_no_machine_and_no_missing_file(page: Path) -> None:
 
 def test_every_node_stands_in_the_page_on_missions() -> None:
     text = text_of(ROOT / "docs" / "missions.md") + text_of(ROOT / "docs" / "nav2.md")
-    of_ours = [node for node in node_types().values() if node.builtin or node.make.__module__.startswith("pluto_bt.")]
-    assert [node.name for node in of_ours if f"| `{node.name}` |" not in text] == []
+    assert [node.name for node in node_types().values() if node.is_ours and f"| `{node.name}` |" not in text] == []
 
 
 def test_every_word_of_a_run_has_its_row() -> None:

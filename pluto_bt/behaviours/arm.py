@@ -6,15 +6,16 @@ from typing import ClassVar
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.messages import ActuatorState
 
 THERE = 0.01
 
 
-class UnfoldArm(Leaf):
+class UnfoldArm(RobotLeaf):
     """Unfolds the arm, or folds it again; SUCCESS when it has come to its end. Does not touch the wheels."""
 
     DEVICES: ClassVar = ("arm",)
@@ -29,11 +30,8 @@ class UnfoldArm(Leaf):
         """The command goes out in the first `update`."""
         self._start_s, self._is_sent = self.now_s(), False
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Send once, then watch the arm."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         if robot.platform.devices.arm is None:
             return self.succeed("no arm") if self.get_input("optional") else self.fail("no-device", self.lacks(robot.platform.devices))
         target = 0.0 if self.get_input("folded") else 1.0

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
+from pluto_bt.behaviours.leaf import NO_PORTS, RobotLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.codes import GotoStatus
@@ -14,20 +15,17 @@ from pluto_bt.blackboard.messages import AlarmState, BatteryState, BumperState, 
 from pluto_bt.skills.map_area import MapArea
 
 
-class Condition(Leaf):
+class Condition(RobotLeaf):
     """Answers at once."""
 
     KIND = "Condition"  # for `pluto nodes` and Groot2
 
+    @abstractmethod
     def ask(self, robot: Robot) -> tuple[bool, str]:
         """(is it so, a short text)."""
-        raise NotImplementedError
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """SUCCESS or FAILURE."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         is_so, self.feedback_message = self.ask(robot)
         self.reason = ""
         return Status.SUCCESS if is_so else Status.FAILURE

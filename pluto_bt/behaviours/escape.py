@@ -7,7 +7,7 @@ from typing import Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
+from pluto_bt.behaviours.leaf import NO_PORTS, RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
@@ -19,7 +19,7 @@ FOLLOWS_SHARE: Final = 0.5  # of the wheels' turn; skidding alone loses less
 PATIENCE_S: Final = 3.0  # beyond the time that the turn should take
 
 
-class ReadAlarms(Leaf):
+class ReadAlarms(RobotLeaf):
     """Takes back the alarms of stasis and stuck wheels, so that new ones can be raised; SUCCESS once they are gone."""
 
     INPUT_PORTS = NO_PORTS
@@ -30,11 +30,8 @@ class ReadAlarms(Leaf):
         self._words = ""
         self._posted_s: float | None = None
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Read, then wait for a newer state, so that the next leaf does not see the old alarm."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         alarms = robot.newest("imu/alarms")
         if not isinstance(alarms, AlarmState) or robot.is_stale("imu/alarms"):
             return self.succeed("no alarms known")

@@ -62,11 +62,6 @@ class Follow(MotionLeaf):
         self._skill.pause(self._gap_s)
         self._ticket, self._was_accepted, self._next_post_s = None, False, -math.inf
 
-    def update(self) -> Status:
-        """Note how long the mission was paused, for `resume`."""
-        self._gap_s = self.now_s() - self._last_s
-        return super().update()
-
     def follow(self, robot: Robot) -> Status:
         """See, decide, drive."""
         trouble = None if self._ticket is None else self.chain_trouble(robot, self.chain_status(robot))

@@ -7,7 +7,7 @@ from typing import Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_doubt
@@ -35,18 +35,15 @@ def radius_around(robot: Robot, thing: Thing, radius_m: float) -> float:
     return max(radius_m, thing.radius_m + outline.reach_m + GAP_M)
 
 
-class FindObject(Leaf):
+class FindObject(RobotLeaf):
     """Finds the closest object in what was seen, and a place on the circle around it. Fails with `no-object`, or with
     `outside-rectangle` where only objects are left whose circle leaves the rectangle."""
 
     INPUT_PORTS = dict(RADIUS)
     OUTPUT_PORTS = {"place": Port(tuple[float, float], False, "where to begin the circle", unit="m"), **MOTION_OUTPUTS}
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Answers at once."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
             doubt = pose_doubt(robot)

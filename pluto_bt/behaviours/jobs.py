@@ -6,6 +6,7 @@ Each posts one command; motion runs the library tree of the job, the same as for
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import ClassVar, Final
 
 from py_trees.common import Status
@@ -25,9 +26,9 @@ class JobLeaf(MotionLeaf):
 
     DEVICES: ClassVar = ("laser",)
 
+    @abstractmethod
     def order(self, robot: Robot) -> tuple[MotionCommand, Pair, Pair]:
         """(cmdFlags, position, velocity) of the command."""
-        raise NotImplementedError
 
     def begin(self, robot: Robot) -> Status | None:
         """Post the command; `force[1..2]` carry the speed limit and A."""

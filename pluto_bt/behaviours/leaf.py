@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Any, ClassVar, Final
 
 from py_trees.common import Status
@@ -68,3 +69,16 @@ class Leaf(BehaviourWithPorts):
         """RUNNING, with a short text."""
         self.feedback_message = text
         return Status.RUNNING
+
+
+class RobotLeaf(Leaf):
+    """A leaf that can do nothing without a robot: it fails with `not-connected` where there is none."""
+
+    def update(self) -> Status:
+        """One tick."""
+        robot = self.robot
+        return self.fail("not-connected", "no robot") if robot is None else self.act(robot)
+
+    @abstractmethod
+    def act(self, robot: Robot) -> Status:
+        """One tick, with the robot."""

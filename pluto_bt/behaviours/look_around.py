@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import ClassVar, Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.paths import SIDES
 from pluto_bt.behaviours.ports import Port
@@ -26,7 +27,7 @@ LOOKS_AHEAD: Final = 5  # … and looks ahead so many times for each look down
 AHEAD: Final = (0.0, 0.0)
 
 
-class WristTour(Leaf):
+class WristTour(RobotLeaf):
     """Points the laser from one target to the next; at each one scan has to arrive that was taken there."""
 
     def initialise(self) -> None:
@@ -35,9 +36,9 @@ class WristTour(Leaf):
         self._next, self._since_s, self._there_s = -1, self.now_s(), math.inf
         self._has_pointed = False
 
+    @abstractmethod
     def targets(self) -> list[Pair]:
         """(pan, tilt) in radians, one after the other."""
-        raise NotImplementedError
 
     def go_on(self, robot: Robot) -> bool:
         """Go on with the tour; True when it is over."""
@@ -95,11 +96,8 @@ class LookAround(WristTour):
         panned = [(angle, 0.0) for angle, word in ((pan, "left"), (-pan, "right")) if side in (word, "both")]
         return [*panned, (0.0, tilt), (0.0, 0.0)]
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Stand, look, done."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         self._hold(robot)
         if self._next < 0 and self._moves(robot) and self.now_s() - self._since_s < PATIENCE_S:
             robot.surroundings.look(robot, self.now_s())
@@ -153,11 +151,9 @@ class SweepWrist(WristTour):
             return [*down, *[AHEAD] * LOOKS_AHEAD]
         return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, (0.0, 0.0)]
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """One round after the other."""
-        robot, rounds = self.robot, int(self.get_input("rounds"))
-        if robot is None:
-            return self.fail("not-connected", "no robot")
+        rounds = int(self.get_input("rounds"))
         if robot.platform.devices.wrist is None:
             if not self.get_input("optional"):
                 return self.fail("no-device", self.lacks(robot.platform.devices))

@@ -7,12 +7,13 @@ follows in the same tick replaces it, and one moves on without stopping; where n
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections.abc import Mapping
 from typing import ClassVar, Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING, sentence
 from pluto_bt.behaviours.robot import Robot, Ticket
@@ -33,7 +34,7 @@ MOTION_INPUTS: Final = {
 MOTION_OUTPUTS: Final = {"reason": Port(str, False, "why it failed: a word of the list in docs/reasons.md; empty on success")}
 
 
-class MotionLeaf(Leaf):
+class MotionLeaf(RobotLeaf):
     """A leaf that holds the robot. Subclasses command in `begin` and judge in `follow`.
 
     Attributes:
@@ -58,19 +59,17 @@ class MotionLeaf(Leaf):
         self._start_s = self._last_s = self._posted_s = self.now_s()
         self._timeout_s = float(self.get_input("timeout_s"))
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """One tick."""
-        robot, now_s = self.robot, self.now_s()
-        if robot is None:
-            return self.fail("not-connected", "no robot")
-        gap_s, self._last_s = now_s - self._last_s, now_s
+        now_s = self.now_s()
+        self._gap_s, self._last_s = now_s - self._last_s, now_s
         was_paused, self._resumes = robot.resumes != self._resumes, robot.resumes
         if not self._began:
             self._began = True
             ended = self.begin(robot)
             return self.wait("starting") if ended is None else ended
         if was_paused:  # that time does not count
-            self._start_s += gap_s
+            self._start_s += self._gap_s
             self.resume(robot)
         if self.elapsed_s >= self._timeout_s:
             return self.fail("timeout", f"{self._timeout_s:g} s are over")
@@ -92,13 +91,13 @@ class MotionLeaf(Leaf):
             robot.command(0)
         self._moves = False
 
+    @abstractmethod
     def begin(self, robot: Robot) -> Status | None:
         """Give the first command. A status ends the leaf at once."""
-        raise NotImplementedError
 
+    @abstractmethod
     def follow(self, robot: Robot) -> Status:
         """Watch, and command again where the leaf must."""
-        raise NotImplementedError
 
     def resume(self, robot: Robot) -> None:
         """After a pause: command again what stood before it."""

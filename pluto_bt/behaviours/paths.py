@@ -9,7 +9,7 @@ from py_trees.common import Status
 from py_trees.ports import NoDataAvailable
 
 from pluto_bt.behaviours.free_itself import FreeItself
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING
@@ -52,7 +52,7 @@ def is_near(around: Surroundings, goal: Pair) -> bool:
     return distance_m < p.tolerance_m or is_open(around.map, around.robot[:2], here, 0.8 * around.ways.least_m, 0.5)
 
 
-class FindPath(Leaf):
+class FindPath(RobotLeaf):
     """Looks for the best open path to `goal`, and fails with `no-path` where there is none; or to ground that is not explored yet, and
     says whether it has `found` any. Where only somebody who walks is in the way to a goal it waits, and takes now and then the path up to him."""
 
@@ -67,11 +67,8 @@ class FindPath(Leaf):
         """Time counts from the first tick."""
         self._start_s, self._next_s = self.now_s(), -math.inf
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Answers at once, unless it has to wait for a pose."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
             doubt = pose_doubt(robot)

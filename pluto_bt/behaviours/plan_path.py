@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import Final
 
 from py_trees.common import Status
 from py_trees.ports import NoDataAvailable
 
 from pluto_bt.behaviours.destinations import Destination
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.ports import Port
@@ -29,22 +30,19 @@ def goal_of(leaf: Leaf, port: str = "goal") -> Destination | None:
     return place
 
 
-class Planning(Leaf):
+class Planning(RobotLeaf):
     """A leaf that waits for a pose, then answers at once."""
 
     def initialise(self) -> None:
         """Time counts from the first tick."""
         self._start_s = self.now_s()
 
+    @abstractmethod
     def plan(self, robot: Robot) -> Status:
         """Plan; the robot's pose is known."""
-        raise NotImplementedError
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Wait for a pose, or plan."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         if robot.surroundings.look(robot, self.now_s()):
             return self.plan(robot)

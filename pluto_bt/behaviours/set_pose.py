@@ -7,15 +7,16 @@ from typing import Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.ports import Port
+from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.messages import Pose
 
 WITHIN_S: Final = 1.0
 
 
-class SetPose(Leaf):
+class SetPose(RobotLeaf):
     """Posts the robot's pose on the map to localisation (setter −1); SUCCESS once it is believed. Does not touch the wheels.
 
     While another module keeps the pose (setter 1 or 2) it is refused: stop that module first, as the manual says (section 7.1).
@@ -30,11 +31,8 @@ class SetPose(Leaf):
         """The post goes out in the first `update`."""
         self._posted: Pose | None = None
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Post once, then wait until localisation shows it as the last one accepted."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         if self._posted is None:
             x_m, y_m, theta_deg = self.get_input("pose")
             if not all(map(math.isfinite, (x_m, y_m, theta_deg))):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import Final
 
 from py_trees.common import Status
@@ -35,9 +36,9 @@ class SteppedLeaf(MotionLeaf):
         """Look at the ports. A status ends the leaf before anything moves."""
         return None
 
+    @abstractmethod
     def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
         """One step of 0.1 s at `pose` (x m, y m, theta rad)."""
-        raise NotImplementedError
 
     def resume(self, robot: Robot) -> None:
         """The next step posts anyway."""

@@ -76,11 +76,8 @@ class WaitFor(TopicCompare):
         """Time counts from the first tick."""
         self._start_s = self.now_s()
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """SUCCESS, or wait on."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         is_so, text = self.ask(robot)
         if is_so:
             return self.succeed(text)

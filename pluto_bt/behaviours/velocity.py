@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import Final
 
 from py_trees.common import Status
@@ -20,9 +21,9 @@ REFRESH_S: Final = 1.0
 class RefreshedLeaf(MotionLeaf):
     """Posts the same command every second until `duration_s` is over or `distance_m` is driven."""
 
+    @abstractmethod
     def send(self, robot: Robot) -> None:
         """Post the command."""
-        raise NotImplementedError
 
     def ends(self) -> tuple[float, float]:
         """(seconds, metres) after which it is over."""

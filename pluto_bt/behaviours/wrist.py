@@ -7,7 +7,7 @@ from typing import ClassVar, Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
@@ -16,7 +16,7 @@ from pluto_bt.blackboard.messages import ActuatorState
 THERE_RAD: Final = math.radians(1.0)
 
 
-class PointWrist(Leaf):
+class PointWrist(RobotLeaf):
     """Turns the wrist; SUCCESS when both axes are within 1° of the target. Does not touch the wheels."""
 
     DEVICES: ClassVar = ("wrist",)
@@ -33,11 +33,8 @@ class PointWrist(Leaf):
         """The command goes out in the first `update`."""
         self._start_s, self._is_sent = self.now_s(), False
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Send once, then watch the wrist."""
-        robot = self.robot
-        if robot is None:
-            return self.fail("not-connected", "no robot")
         target = (math.radians(float(self.get_input("pan_deg"))), math.radians(float(self.get_input("tilt_deg"))))
         if not self._is_sent:
             self._is_sent = True

@@ -4,23 +4,15 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pluto_bt.commands.extras import need
 from pluto_bt.source import Faults, Place
 
 if TYPE_CHECKING:
     from pluto_bt.record.box import Box
     from pluto_bt.record.mcap_reader import McapFile
-
-
-def need_mcap(asked_by: str, faults: Faults) -> bool:
-    """Whether black boxes can be read here; False and a fault if not."""
-    if find_spec("mcap") is not None:
-        return True
-    faults.error(Place(asked_by), "not-installed", "the library mcap is not installed", expected="mcap", mend="pip install 'pluto_bt[record]'")
-    return False
 
 
 def read_box(name: str, *, needs_ticks: bool = True) -> Box:
@@ -30,7 +22,7 @@ def read_box(name: str, *, needs_ticks: bool = True) -> Box:
     """
     faults = Faults()
     box = None
-    if need_mcap(name, faults):
+    if need("record", name, faults):
         from pluto_bt.commands.carmen_box import is_carmen
         from pluto_bt.record.box import open_box
         from pluto_bt.record.entries import WATCHED
@@ -63,7 +55,7 @@ def _of_carmen(name: str, faults: Faults) -> Box | None:
 def read_mcap(name: str) -> McapFile:
     """The MCAP file of that name. Raises: InputError."""
     faults = Faults()
-    if need_mcap(name, faults):
+    if need("record", name, faults):
         from pluto_bt.record.mcap_reader import open_mcap
 
         file = open_mcap(Path(name), name, faults)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pluto_bt.commands.extras import need
 from pluto_bt.source import Faults, InputError, Place
 from pluto_bt.source.faults import fail
 
@@ -96,9 +96,7 @@ def check_web(text: str | None, faults: Faults, access: Access | None = None) ->
     """The address of the web console, whether it can be had, and whether its library is there."""
     if text is None:
         return
-    if find_spec("aiohttp") is None:
-        what, mend = "the library aiohttp is not installed", "pip install 'pluto_bt[web]'"
-        faults.error(Place("--web"), "not-installed", what, expected="aiohttp", mend=mend)
+    need("web", "--web", faults)
     from pluto_bt.gateway.listen import open_listener
 
     try:
@@ -129,9 +127,7 @@ def check_groot(text: str | None, faults: Faults) -> None:
     """The address of the monitor, and whether its library is there."""
     if text is None:
         return
-    if find_spec("zmq") is None:
-        what, mend = "the library pyzmq is not installed", "pip install 'pluto_bt[groot]'"
-        faults.error(Place("--groot"), "not-installed", what, expected="pyzmq", mend=mend)
+    need("groot", "--groot", faults)
     try:
         groot_address(text)
     except InputError as error:
@@ -147,10 +143,7 @@ def read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest |
     from pluto_bt.gateway.listen import parse_address
     from pluto_bt.gateway.ssh_link import DEFAULT_PORT, SshRequest, open_ssh_listener
 
-    missing = [name for name in ("asyncssh", "prompt_toolkit") if find_spec(name) is None]
-    if missing:
-        what, mend = f"{' and '.join(missing)} not installed", "pip install 'pluto_bt[shell]'"
-        faults.error(Place("--ssh"), "not-installed", what, expected=", ".join(missing), mend=mend)
+    if not need("shell", "--ssh", faults):
         return None
     from pluto_bt.gateway.ssh_keys import check_keys, default_keys
 

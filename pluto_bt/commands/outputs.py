@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
-from importlib.util import find_spec
 from pathlib import Path
 
+from pluto_bt.commands.extras import need
 from pluto_bt.source import Faults, Place
 
 INPUT_ENDINGS = (".xml", ".yaml", ".yml", ".map", ".toml", ".py")  # a slip of the hand must not cost a mission
@@ -21,9 +21,8 @@ def check_outputs(args: argparse.Namespace, faults: Faults) -> None:
         what, mend = "--journal goes with --resume", "add --resume hold, or drop --journal"
         faults.error(Place(f"--journal {args.journal}"), "bad-option", what, expected="--resume", found="--journal alone", mend=mend)
     check_file(args.record, "--record", (".mcap",), faults)
-    if args.record is not None and find_spec("mcap") is None:
-        mend = "pip install 'pluto_bt[record]'"
-        faults.error(Place(f"--record {args.record}"), "not-installed", "the library mcap is not installed", expected="mcap", mend=mend)
+    if args.record is not None:
+        need("record", f"--record {args.record}", faults)
     if not args.realtime and args.speed is not None:
         what, mend = "--speed goes with --realtime; lockstep always runs as fast as it can", "add --realtime, or drop --speed"
         faults.error(Place("--speed"), "bad-option", what, expected="--realtime", found=f"--speed {args.speed} alone", mend=mend)

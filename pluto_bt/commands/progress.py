@@ -22,15 +22,6 @@ def is_terminal(stream: IO[str]) -> bool:
     return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
-def make_progress(stream: IO[str], watch: bool) -> Progress:
-    """What `pluto run` shows; the tree too if it is to be watched."""
-    if not watch:
-        return Progress(stream)
-    from pluto_bt.commands.watch import LiveTree, ToldTree
-
-    return LiveTree(stream) if is_terminal(stream) else ToldTree(stream)
-
-
 class Progress:
     """Prints to a stream; knows whether that is a terminal."""
 

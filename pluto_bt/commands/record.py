@@ -25,13 +25,13 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--topic", metavar="NAME", action="append", default=[], help=about)
     parser.add_argument("--seconds", metavar="S", help="stop after so much time of the robot's clock")
     args = parser.parse_args(argv)
-    from pluto_bt.commands.boxes import need_mcap
+    from pluto_bt.commands.extras import need
     from pluto_bt.commands.option_values import read_positive
     from pluto_bt.commands.outputs import check_file
 
     faults = Faults()
     seconds = read_positive(args.seconds, "--seconds", faults)
-    if need_mcap(args.file, faults):
+    if need("record", args.file, faults):
         check_file(args.file, "FILE", (".mcap",), faults)
     faults.raise_errors()
     return record(Path(args.file), args.gateway, args.topic, seconds)

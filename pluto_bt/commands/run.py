@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 from pluto_bt.commands.options import Parser
 from pluto_bt.result import RunResult
 from pluto_bt.source import Faults, InputError
 
 if TYPE_CHECKING:
+    from pluto_bt.commands.progress import Progress
     from pluto_bt.resume import ResumeRequest
 
 
@@ -52,6 +53,17 @@ def _parser() -> Parser:
     parser.add_argument("--groot", metavar="[HOST:]PORT", help="serve Groot2's live monitor, read-only (Groot2's own port is 1667)")
     parser.add_argument("--json", action="store_true", help="end with one JSON object on the last line")
     return parser
+
+
+def _progress(stream: IO[str], watch: bool) -> Progress:
+    """What the run shows of itself; the tree too if it is to be watched."""
+    from pluto_bt.commands.progress import Progress, is_terminal
+
+    if not watch:
+        return Progress(stream)
+    from pluto_bt.commands.watch import LiveTree, ToldTree
+
+    return LiveTree(stream) if is_terminal(stream) else ToldTree(stream)
 
 
 def _confirm(question: str) -> bool:
@@ -96,10 +108,9 @@ def _run(args: argparse.Namespace) -> RunResult:
     inputs = read_inputs(Request.of(args), faults=faults)
     for warning in inputs.warnings:
         print(warning.as_text(), file=sys.stderr)
-    from pluto_bt.commands.progress import make_progress
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
-    progress = make_progress(sys.stderr if args.json else sys.stdout, args.watch)
+    progress = _progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
         resume=_resume(args), gateway=args.gateway, gateway_access=access, gateway_audit=args.gateway_audit, web=args.web,

@@ -161,7 +161,7 @@ class Local:
         if then is None or arm is None:
             self.dropped += 1
             return
-        self._check.look(stamp_s, arm, then.tilt)
+        self._check.look(stamp_s, arm, then)
         increment = self.track.increment_covariance(-math.inf if self._scan_s is None else self._scan_s, stamp_s)
         self._scan_s = stamp_s
         self._laser_dead_reckoning.put(laser_pose(stamp_s, then.pose_odom, then.tilt, arm, increment, Setter.NOBODY), now_s)

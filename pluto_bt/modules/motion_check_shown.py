@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
-
 from estimation.motion_check import MotionCheck
 from estimation.news import FOUND, LOST, WHEELS_GRIP
-from estimation.track import Tilt
+from estimation.track import Moment
 from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import Arm
+from pluto_bt.modules.tilted_laser import LEVEL_RAD, TiltedLaser
 from pluto_bt.skills.reasons import NO_POSE
 from pluto_bt.skills.scan_watch import are_same
 
-LEVEL_RAD = math.radians(2.0)  # a scan from a wrist or a robot that leans more also sees the ground
 FINE = (1.0, 0.0, True, False, False)
 AGREED, CORRECTED, IS_LOST = 0, 1, 2  # element[0] of the topic
 SETTLING = "the heading was wrong and is being put right"
@@ -29,19 +27,21 @@ class MotionCheckShown:
         self._topic = context.board.publisher("Localization/Check", "local")
         self._word = self._text = self._lost_text = ""
         self._pan_rad = 0.0
+        self._tilted = TiltedLaser(context.say)
         self._ranges_m: FloatArray | None = None
         self._shown: tuple[float, float, bool, bool, bool] | None = None
 
-    def look(self, stamp_s: float, arm: Arm, tilt: Tilt) -> None:
-        """Give the scan of that stamp to the check, if it is level."""
+    def look(self, stamp_s: float, arm: Arm, then: Moment) -> None:
+        """Give the scan of that stamp, when the robot was at `then`, to the check, if it is level."""
         sample = self._scan()
         if sample is None or not isinstance(sample.value, LaserScan) or sample.value.stamp_s != stamp_s:
             return
+        self._tilted.look(arm.tilt_rad, then.pose_odom)
         scan, last, self._ranges_m = sample.value, self._ranges_m, sample.value.ranges_m
         if last is not None and _has_equal_half(last, scan.ranges_m):
             return  # a laser that repeats itself is no witness
         panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
-        if max(abs(arm.tilt_rad), abs(tilt[0]), abs(tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
+        if max(abs(arm.tilt_rad), abs(then.tilt[0]), abs(then.tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
             return  # and what the scan before it told still waits to be confirmed
         x, y = arm.pose_robot_laser[:2]
         self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))

@@ -14,6 +14,7 @@ from pluto_bt.behaviours.ports import text_of
 from pluto_bt.trees.decorators.updated import UpdateWatch
 from pluto_bt.trees.engine.node import Node
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.leaves.constant import AlwaysSuccess
 from pluto_bt.trees.mission import Mission
 from pluto_bt.trees.nav2.paced import Paced
 from pluto_bt.trees.scopes import EMPTY, Entry, Scope
@@ -21,7 +22,7 @@ from pluto_bt.trees.tracked import Tracked
 from pluto_bt.trees.values import PortProblem, kind_of_value
 
 State = dict[str, Any]  # {"nodes": {number: [letter, memory]}, "board": {scope number: {key: [seq, is typed, value]}}}
-OWN: Final = frozenset(vars(Node()))  # what every node has; the rest is memory, or was set by the loader
+OWN: Final = frozenset(vars(AlwaysSuccess()))  # what every node has; the rest is memory, or was set by the loader
 NOT_MEMORY: Final = frozenset({"child", "enums", "scope", "script", "source_key", "tree_id", "timer", "started", "expired", "waiting", "resumes"})
 LETTERS: Final[dict[Result, str]] = {IDLE: "I", RUNNING: "R", SUCCESS: "S", FAILURE: "F", SKIPPED: "K"}
 STATUS_OF_LETTER: Final = {letter: status for status, letter in LETTERS.items()}

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pytest
 
+from pluto_bt.behaviours.conditions import Condition
 from pluto_bt.behaviours.destinations import Destinations
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.nav2.missing import MISSING
 from pluto_bt.blackboard.messages import ActuatorState, BatteryState, FVectorState, LaserScan, read_only
 from pluto_bt.maps.world import Goal, Shape, World
 from pluto_bt.skills.sight import ScanView
-from pluto_bt.trees import TickError, check_mission
+from pluto_bt.trees import MissionError, check_mission, load_mission, plan_mission
 
 ROOMS = World(
     "rooms",
@@ -423,9 +424,20 @@ def test_get_current_pose_and_cancel_control(stage: Any, run: Any) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(MISSING))
-def test_what_is_not_there_yet_is_told_by_name(stage: Any, name: str) -> None:
+def test_what_is_not_there_yet_is_refused_by_name_before_anything_runs(stage: Any, name: str) -> None:
     text = f'<root BTCPP_format="4"><BehaviorTree ID="T"><Sequence><{name}/></Sequence></BehaviorTree></root>'
     faults = [fault for fault in check_mission(text) if fault.code == "not-there-yet"]
     assert [(fault.line, fault.severity) for fault in faults] == [(1, "error")] and name in faults[0].message
-    with pytest.raises(TickError, match=f"<{name}> is not there yet"):
-        stage.load(text).tick_once()
+    with pytest.raises(MissionError, match=f"<{name}> is not there yet"):
+        stage.load(text)
+    assert plan_mission(text).children, "it can be drawn all the same"
+
+
+def test_a_leaf_that_forgets_its_part_is_refused_when_it_is_built(stage: Any) -> None:
+    class Forgetful(Condition):
+        INPUT_PORTS: ClassVar = {}
+        OUTPUT_PORTS: ClassVar = {}
+
+    text = '<root BTCPP_format="4"><BehaviorTree ID="T"><Forgetful/></BehaviorTree></root>'
+    with pytest.raises(MissionError, match=r"<Forgetful> could not be built.*ask"):
+        load_mission(text, nodes=[Forgetful])

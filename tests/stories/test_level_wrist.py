@@ -44,3 +44,22 @@ def test_after_a_sweep_the_laser_notices_wheels_that_spin_and_goto_does_not_boas
     run = scenario(world, mission=mission, max_time_s=200.0)
     assert (run.result, run.reason) == ("FAILURE", "stuck"), run.text
     assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.5
+
+
+LONG_ROOM = f'<world name="room">{ROOM}<robot x="-1" y="0"/></world>'
+POSTURES = {  # what stands before and between two legs of 5 and 4 m → how often it is said
+    "left tilted by the user": ('<PointWrist tilt_deg="10"/><GoTo goal="4;0"/><GoTo goal="8;0"/>', 1),
+    "tilted, levelled, tilted again": (
+        '<PointWrist tilt_deg="10"/><GoTo goal="2;0"/><PointWrist/><GoTo goal="5;0"/><PointWrist tilt_deg="-5"/><GoTo goal="8.5;0"/>', 2),
+    "panned": ('<PointWrist pan_deg="30"/><GoTo goal="4;0"/><GoTo goal="8;0"/>', 0),
+    "glances at the ground": ('<SweepWrist/><GoTo goal="4;0"/><SweepWrist/><GoTo goal="8;0"/>', 0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("legs", "times"), POSTURES.values(), ids=POSTURES)
+def test_a_laser_that_stays_tilted_while_the_robot_drives_is_told_once_with_the_cure(scenario: Play, files: Any, legs: str, times: int) -> None:
+    world, mission = files(LONG_ROOM, f"<Sequence>{legs}</Sequence>")
+    run = scenario(world, mission=mission, max_time_s=200.0)
+    said = run.said("laser-tilted")
+    assert len(said) == times, run.text
+    assert all("deg" in line and 'PointWrist with tilt_deg="0"' in line for line in said)

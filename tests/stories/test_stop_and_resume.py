@@ -10,16 +10,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
-from py_trees.common import Status
-from py_trees.ports import BehaviourWithPorts, PortInformation
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState
 from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.runner import make_runner
+from tests.trees.clinging import Clings
 
 HALL = """<world name="hall" seed="1"><wall id="fence">-6,-4 6,-4 6,4 -6,4 -6,-4</wall> <circle id="post" x="0.5" y="0.2" r="0.15"/>
   <circle id="drum" x="2.5" y="-1.2" r="0.4"/> <area id="floor" kind="map">-6,-4 6,-4 6,4 -6,4</area>
@@ -128,19 +127,6 @@ def test_a_stop_without_resume_ends_with_the_run_and_the_word_stays(tmp_path: Pa
     run = Stopped(kind, tmp_path, lambda port: port.stop("test"), lambda port: port.mission("abort", "", "", "test"))
     assert (run.result.result, run.result.reason) == ("STOPPED", "stopped")
     assert run.result.exit_code == 1
-
-
-class Clings(BehaviourWithPorts, tag="Clings"):
-    """Works for ever, and raises when it is told to let go."""
-
-    INPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
-    OUTPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
-
-    def update(self) -> Status:
-        return Status.RUNNING
-
-    def terminate(self, new_status: Status) -> None:
-        raise RuntimeError("it does not open")
 
 
 def test_a_run_whose_time_is_over_ends_as_such_also_if_a_leaf_raises_while_it_lets_go(tmp_path: Path) -> None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
-from py_trees.common import Status
-from py_trees.ports import BehaviourWithPorts, PortInformation
 
 from pluto_bt.runtime import VirtualClock
 from pluto_bt.trees import load_mission
 from pluto_bt.trees.executive import Executive
+from tests.trees.clinging import Clings
 
 SLEEPS = '<root BTCPP_format="4"><BehaviorTree ID="main"><Sleep msec="9000"/></BehaviorTree></root>'
 
@@ -33,19 +32,6 @@ class Body:
 def made() -> tuple[Executive, Body]:
     body = Body()
     return Executive(body, lambda level, code, text: None), body
-
-
-class Clings(BehaviourWithPorts, tag="Clings"):
-    """Works for ever, and raises when it is told to let go."""
-
-    INPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
-    OUTPUT_PORTS: ClassVar[dict[str, PortInformation]] = {}
-
-    def update(self) -> Status:
-        return Status.RUNNING
-
-    def terminate(self, new_status: Status) -> None:
-        raise RuntimeError("it does not open")
 
 
 @pytest.mark.parametrize("end", ["abort", "preempt", "job", "errand"])

@@ -3,7 +3,7 @@
 from typing import Final
 
 from pluto_bt.behaviours.leaf import Leaf
-from pluto_bt.behaviours.nav2 import conditions, costmaps, driving, goals, missing, paths, planning, selectors
+from pluto_bt.behaviours.nav2 import conditions, costmaps, driving, goals, paths, planning, selectors
 
 NAV2_LEAVES: Final[tuple[type[Leaf], ...]] = (
     planning.ComputePathToPose, planning.ComputePathThroughPoses, planning.SmoothPath, driving.NavigateToPose, driving.NavigateThroughPoses,
@@ -16,5 +16,5 @@ NAV2_LEAVES: Final[tuple[type[Leaf], ...]] = (
     conditions.GoalUpdated, conditions.GlobalUpdatedGoal, conditions.GoalReached, conditions.TimeExpired, conditions.DistanceTraveled,
     conditions.PathExpiringTimer, conditions.IsBatteryLow, conditions.InitialPoseReceived, conditions.TransformAvailable, conditions.ArePosesNear,
     conditions.IsGoalNearby, conditions.IsWithinPathTrackingBounds, conditions.AreErrorCodesPresent, conditions.WouldAControllerRecoveryHelp,
-    conditions.WouldAPlannerRecoveryHelp, conditions.WouldASmootherRecoveryHelp, conditions.WouldARouteRecoveryHelp, *missing.LEAVES,
+    conditions.WouldAPlannerRecoveryHelp, conditions.WouldASmootherRecoveryHelp, conditions.WouldARouteRecoveryHelp,
 )  # fmt: skip

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from abc import abstractmethod
+
 from py_trees.common import Status
 
 from pluto_bt.behaviours.destinations import Destination
-from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
+from pluto_bt.behaviours.leaf import NO_PORTS, RobotLeaf
 from pluto_bt.behaviours.nav2.planning import value_of
 from pluto_bt.behaviours.nav2.ports import SERVICE
 from pluto_bt.behaviours.ports import Port
@@ -16,18 +18,16 @@ PLUGINS = {"plugins": Port(list[str], False, "of Nav2; means nothing here")}
 DISTANCE = {"reset_distance": Port(float, False, "side of the square", 1.0, unit="m", ge=0.0)}
 
 
-class ClearCostmap(Leaf):
+class ClearCostmap(RobotLeaf):
     """Forgets something that was seen; SUCCESS at once."""
 
+    @abstractmethod
     def forget(self, robot: Robot) -> None:
         """Do it."""
-        raise NotImplementedError
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Forget."""
-        if self.robot is None:
-            return self.fail("not-connected", "no robot")
-        self.forget(self.robot)
+        self.forget(robot)
         return self.succeed()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import Any, Final
 
 from py_trees.common import Status
@@ -77,9 +78,9 @@ class Spin(Behavior, SteppedLeaf):
 class StraightLeaf(Behavior, RefreshedLeaf):
     """Drives so far with a speed, both signed."""
 
+    @abstractmethod
     def wanted(self) -> tuple[float, float]:
         """(metres, metres a second), positive forwards."""
-        raise NotImplementedError
 
     def ends(self) -> tuple[float, float]:
         """Only the distance ends it."""

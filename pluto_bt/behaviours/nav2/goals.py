@@ -9,7 +9,7 @@ import numpy as np
 from py_trees.common import Status
 
 from pluto_bt.behaviours.destinations import Destination, Destinations
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.nav2.planning import value_of
 from pluto_bt.behaviours.nav2.ports import FRAMES, SERVICE
 from pluto_bt.behaviours.ports import Port
@@ -61,31 +61,27 @@ class RemovePassedGoals(GoalsLeaf):
         return self.hand_over(goals.having(left))
 
 
-class RemoveInCollisionGoals(GoalsLeaf):
+class RemoveInCollisionGoals(GoalsLeaf, RobotLeaf):
     """Drops the goals at which something stands, on the map or seen."""
 
     INPUT_PORTS = {**GOALS, **COSTS, **STATUSES_IN}
     OUTPUT_PORTS = {**OUTPUT, **STATUSES_OUT}
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Answers at once."""
-        robot, goals = self.robot, value_of(self, "input_goals", Destinations())
-        if robot is None:
-            return self.fail("not-connected", "no robot")
+        goals = value_of(self, "input_goals", Destinations())
         return self.hand_over(goals.having([goal for goal in goals if not is_occupied(robot, goal)]))
 
 
-class CheckPoseOccupancy(Leaf):
+class CheckPoseOccupancy(RobotLeaf):
     """SUCCESS if nothing stands at a pose, neither on the map nor by what was seen."""
 
     INPUT_PORTS = {"pose": Port(Destination, True, "the pose"), **COSTS}
     OUTPUT_PORTS: Any = {}
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Answers at once."""
-        if self.robot is None:
-            return self.fail("not-connected", "no robot")
-        return Status.FAILURE if is_occupied(self.robot, self.get_input("pose")) else Status.SUCCESS
+        return Status.FAILURE if is_occupied(robot, self.get_input("pose")) else Status.SUCCESS
 
 
 class AppendGoalPoseToGoals(GoalsLeaf):

@@ -1,13 +1,11 @@
-"""Nodes of Nav2 that have no counterpart on our robots yet: known by name, so that a tree with one is told which it is and where."""
+"""Nodes of Nav2 that have no counterpart on our robots: known by name, so that a tree with one is refused with the reason and the place.
+
+There is no class behind them: nothing that could be run.
+"""
 
 from __future__ import annotations
 
-from typing import Any, ClassVar, Final
-
-from py_trees.common import Status
-
-from pluto_bt.behaviours.leaf import Leaf
-from pluto_bt.behaviours.ports import Port
+from typing import Final
 
 # name → (why, inputs, outputs)
 MISSING: Final[dict[str, tuple[str, str, str]]] = {
@@ -43,28 +41,3 @@ MISSING: Final[dict[str, tuple[str, str, str]]] = {
     "IsBatteryCharging": ("a charger that tells", "battery_topic", ""),
 }
 CONDITIONS: Final = ("IsBatteryCharging",)
-
-
-class NotThereYet(Leaf):
-    """Cannot be run: a check tells it, and a tick ends with an error."""
-
-    MISSING: ClassVar[str] = ""
-
-    def update(self) -> Status:
-        """Raises."""
-        raise NotImplementedError(f"<{type(self).__name__}> is not there yet: our robots have no {self.MISSING}")
-
-
-def _leaf(name: str, why: str, inputs: str, outputs: str) -> type[NotThereYet]:
-    members: dict[str, Any] = {
-        "MISSING": why,
-        "KIND": "Condition" if name in CONDITIONS else "Action",
-        "INPUT_PORTS": {port: Port(Any, False) for port in inputs.split()},
-        "OUTPUT_PORTS": {port: Port(Any, False) for port in outputs.split()},
-        "__module__": __name__,
-        "__doc__": f"Not there yet: {why}.",
-    }
-    return type(name, (NotThereYet,), members)
-
-
-LEAVES: Final = tuple(_leaf(name, *row) for name, row in MISSING.items())

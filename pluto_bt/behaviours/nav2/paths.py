@@ -9,7 +9,7 @@ import numpy as np
 from py_trees.common import Status
 
 from pluto_bt.behaviours.destinations import Destination, Destinations
-from pluto_bt.behaviours.leaf import Leaf
+from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.map_path import Array, MapPath
 from pluto_bt.behaviours.nav2.planning import value_of
 from pluto_bt.behaviours.nav2.ports import FRAMES, SERVICE, ignored
@@ -135,16 +135,14 @@ class GetPoseFromPath(Leaf):
         return self.succeed()
 
 
-class PathCheck(Leaf):
+class PathCheck(RobotLeaf):
     """SUCCESS if nothing stands on a path, from the robot on: neither on the map nor by what was seen."""
 
     KIND = "Condition"
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Answers at once. An empty path is not free."""
-        robot, path = self.robot, value_of(self, "path", MapPath.empty())
-        if robot is None:
-            return self.fail("not-connected", "no robot")
+        path = value_of(self, "path", MapPath.empty())
         if not len(path):
             self.feedback_message = "the path is empty"
             return Status.FAILURE

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import itertools
 import uuid
+from abc import abstractmethod
 from collections.abc import Callable, Iterator
 from typing import Any, ClassVar, Final, NoReturn
 
@@ -51,9 +52,9 @@ class Node(Behaviour):
         self.readers: dict[str, Callable[[], Any]] = {}
         self.writers: dict[str, Callable[[Any], None]] = {}
 
+    @abstractmethod
     def step(self) -> Result:
         """One tick. Subclasses do all their work here."""
-        raise NotImplementedError
 
     def halt(self) -> None:
         """Interrupt a RUNNING node; here, of one that has nothing to let go."""

@@ -43,6 +43,7 @@ class Reading:
     text: str = ""
     file: str = ""
     contracts: Sequence[Contract] = ()
+    lacks_nodes: bool = False  # the plan has nodes without a class: it can be drawn and checked, not run
 
     @property
     def origin(self) -> Origin:
@@ -86,7 +87,7 @@ def load_mission(
 
 def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int] | None, robot: Any) -> Mission:
     report, faults = reading.report, reading.report.faults
-    if report.stops_loading or reading.plan is None or reading.main is None:
+    if report.stops_loading or reading.lacks_nodes or reading.plan is None or reading.main is None:
         raise MissionError(faults.in_order())
     reading.board.robot = robot
     context = Context(clock if clock is not None else _monotonic_clock())
@@ -152,6 +153,7 @@ def _tell_missing(reading: Reading) -> None:
         plan = waiting.pop()
         waiting.extend(plan.children)
         if plan.node_type is not None and plan.node_type.missing:
+            reading.lacks_nodes = True
             what = f"<{plan.type_name}> is not there yet: our robots have no {plan.node_type.missing}"
             reading.report.late(plan.element.place, "not-there-yet", what, expected="another node", found=plan.type_name)
 

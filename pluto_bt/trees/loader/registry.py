@@ -11,12 +11,13 @@ from typing import Any, Final
 from py_trees.ports import get_ports_registry
 
 import pluto_bt.behaviours.catalogue  # noqa: F401  # the library's own leaves enter py_trees' registry by being imported
+from pluto_bt.behaviours.nav2.missing import CONDITIONS, MISSING
 from pluto_bt.trees.controls import CONTROLS
 from pluto_bt.trees.decorators import DECORATORS
 from pluto_bt.trees.engine.node import DecoratorNode, Node
 from pluto_bt.trees.leaves import LEAVES
 from pluto_bt.trees.nav2 import NAV2_NODES
-from pluto_bt.trees.ports import PortModel, models_of_class
+from pluto_bt.trees.ports import Direction, PortModel, models_of_class
 
 EXPLICIT_TAGS: Final = ("Action", "Condition", "Control", "Decorator", "SubTree")
 _FORBIDDEN = re.compile(r"""[<>&"'/\\:*?|. \t\r\n\x00-\x1f\x7f]""")
@@ -28,7 +29,7 @@ class NodeType:
 
     Attributes:
         kind: Action, Condition, Control or Decorator.
-        make: the class; None for a model without implementation.
+        make: the class; None for a model without implementation, and for what our robots lack.
         children: fewest and most children while ticking (None: no limit).
         missing: what our robots lack for it, of a node that is known by name alone; "" for all others.
         builtin: True for the nodes of BehaviorTree.CPP itself.
@@ -46,7 +47,7 @@ class NodeType:
     @property
     def is_ours(self) -> bool:
         """True for what pluto_bt itself brings; a user's leaf may do what its ports do not tell."""
-        return self.builtin or getattr(self.make, "__module__", "").startswith("pluto_bt.")
+        return self.builtin or bool(self.missing) or getattr(self.make, "__module__", "").startswith("pluto_bt.")
 
 
 def name_problem(name: str) -> str:
@@ -83,7 +84,8 @@ def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[s
         importlib.import_module(plugin)
     registry = get_ports_registry()
     tags = {cls: tag for tag, cls in registry.items()}
-    types = {name: _own_type(name, cls, builtin=False) for name, cls in NAV2_NODES.items()}
+    types = {name: _missing_type(name, *row) for name, row in MISSING.items()}
+    types |= {name: _own_type(name, cls, builtin=False) for name, cls in NAV2_NODES.items()}
     types |= {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
     for cls in nodes:
         name = tags.get(cls, cls.__name__)
@@ -98,8 +100,15 @@ def _own_type(name: str, cls: type[Node], *, builtin: bool) -> NodeType:
 
 def _leaf_type(tag: str, cls: Any) -> NodeType:
     kind = "Condition" if getattr(cls, "KIND", "Action") == "Condition" else "Action"
-    missing = getattr(cls, "MISSING", "")
-    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_about(cls), missing=missing)
+    return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_about(cls))
+
+
+def _missing_type(name: str, why: str, inputs: str, outputs: str) -> NodeType:
+    """A node of Nav2 that is known by name, so that its ports are not told as faults beside it; without a class."""
+    sides: tuple[tuple[Direction, str], ...] = (("in", inputs), ("out", outputs))
+    ports = {port: PortModel(port, side, required=False) for side, names in sides for port in names.split()}
+    kind = "Condition" if name in CONDITIONS else "Action"
+    return NodeType(name, kind, ports, description=f"Not there yet: {why}.", missing=why)
 
 
 def _about(cls: Any) -> str:

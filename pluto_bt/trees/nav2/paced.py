@@ -7,6 +7,7 @@ RUNNING. A parent that resets them makes them begin anew.
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from collections import deque
 from typing import Any, ClassVar
 
@@ -43,9 +44,9 @@ class Paced(DecoratorNode):
         """Activated. False if it cannot work."""
         return True
 
+    @abstractmethod
     def is_due(self) -> bool | None:
         """True if the child's turn has come; None if that cannot be told."""
-        raise NotImplementedError
 
     def succeeded(self) -> bool:
         """The child has succeeded: from here on it is reckoned. False if that cannot be."""
