@@ -74,7 +74,7 @@ class FilterEyes:
         self.walkers.forget()
 
     def people(self, now_s: float) -> Array:
-        """Where somebody may be, as `WalkerWatch.rows`. Where one walks, others may whom no sensor found; so may who started it just now."""
+        """Where somebody may be, as `WalkerWatch.rows`. Where one walks, others may whom no sensor found, and so may who started it a moment ago."""
         rows = self.walkers.rows(now_s)
         is_new = self._begun_s is not None and now_s - self._begun_s < self._parameters.starter_s
         is_anywhere = is_new or self.walkers.is_anybody_about(now_s)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from pluto_bt.bench.courses import Course
-from pluto_bt.bench.patrols import Drive, drive
+from pluto_bt.bench.courses import Course, Surveyor
+from pluto_bt.bench.patrols import LEGS, PLATFORMS, Drive, drive, random_worlds
 from pluto_bt.maps.world import Actor, Shape, World
 from pluto_bt.modules.robot_file import load_robot_file
+from pluto_bt.scenario import Play
 
 FENCE = Shape("fence", "wall", np.array([(-9.0, -9.0), (9.0, -9.0), (9.0, 9.0), (-9.0, 9.0), (-9.0, -9.0)]))
 
@@ -55,3 +57,34 @@ def test_when_everybody_is_gone_it_drives_as_ever() -> None:
     passed = among("atrv2", (5.0, 5.0), 1.2, [(2.5, -2.0), (2.5, -8.5)])
     assert passed.runner.result.result == "SUCCESS"
     assert passed.runner.result.sim_time_s < alone.runner.result.sim_time_s + 25.0
+
+
+DOOR = """<world name="door"><wall id="hall">-2,-3 14,-3 14,3 -2,3 -2,-3</wall>
+<polygon id="right">{x0},-3 {x1},-3 {x1},-0.8 {x0},-0.8</polygon><polygon id="left">{x0},0.8 {x1},0.8 {x1},3 {x0},3</polygon>
+<actor id="person" r="0.25" speed="{speed}" loop="true">{x},-0.5 {x},0.5</actor><robot x="0" y="0"/>
+<script><at t="45"><remove id="person"/></at></script></world>"""
+TO_THE_OTHER_SIDE = '<root BTCPP_format="4"><BehaviorTree ID="M"><MoveTo goal="12;0" timeout_s="200"/></BehaviorTree></root>'
+
+
+WHERE_AND_HOW_FAST = [("atrv2", 4.2, 0.5), ("atrv2", 9.0, 0.7), ("pioneer", 4.2, 0.8), ("pioneer", 6.2, 0.5)]
+
+
+@pytest.mark.parametrize(("platform", "away_m", "speed_mps"), WHERE_AND_HOW_FAST)
+def test_who_paces_in_the_only_doorway_is_awaited_however_far_he_is(
+    scenario: Play, tmp_path: Path, platform: str, away_m: float, speed_mps: float
+) -> None:
+    (tmp_path / "door.xml").write_text(DOOR.format(x=away_m, x0=away_m - 0.2, x1=away_m + 0.2, speed=speed_mps))
+    (tmp_path / "through.xml").write_text(TO_THE_OTHER_SIDE)
+    run = scenario(str(tmp_path / "door.xml"), mission=str(tmp_path / "through.xml"), platform=platform, seed=3)
+    assert (run.result, run.reason, run.collisions) == ("SUCCESS", "", 0)
+    assert run.sim_time_s > 45.0, "he left only then"
+
+
+@pytest.mark.parametrize(("platform", "seed"), [("pioneer", 1507), ("atrv2", 2005)])
+def test_while_somebody_is_in_view_the_robot_turns_as_if_another_were_behind_it(platform: str, seed: int) -> None:
+    """Rooms drawn at random in which it had to turn round at once, and a second person came from where no sensor looks."""
+    (place, world), robot = random_worlds(seed, 3)[0], load_robot_file(platform)
+    surveyor = Surveyor(world, robot.body.outline_m)
+    course = surveyor.course(np.random.default_rng((seed, 0, PLATFORMS.index(platform), False)), LEGS, around=False)
+    assert course is not None
+    assert touches(drive(place, world, robot, course, seed, 6.0)) == []
