@@ -7,7 +7,8 @@ near to its distance as a smooth path allows: nonlinear least squares by Gauss a
     lean_i   shift of station i to its left, towards the wall
     e_k      how much too far the camera is, less `SPARE_M` on either side: at each station with the robot pointing along the piece of path
              before it, along the one after it, and between the two, so that no swing at a bend is left out
-    cost = Σ w e² + STAY Σ lean² + SMOOTH Σ (second difference of lean)², where w = 1 + (e / PEAK_M)² of the round before: what is far off matters
+    cost = Σ w e² + STAY Σ lean² + SMOOTH Σ (second difference of lean)², where w = 1 + (e / PEAK_M)² of the round before, `NEAR` times
+    that where the camera is too near
 
 Ref: Nocedal, Wright, Numerical Optimization, section 10.3.
 """
@@ -27,7 +28,8 @@ Indices = NDArray[np.intp]
 SPACING_M = 0.15  # between stations …
 BEHIND_M, AHEAD_M = 0.6, 3.0  # … from so far behind the robot to so far before it
 SPARE_M = 0.1  # so far off the camera may be without any lean
-STAY, SMOOTH, PEAK_M = 0.06, 1.0, 0.05
+STAY, SMOOTH, PEAK_M = 0.06, 1.0, 0.4
+NEAR = 6.0  # times as bad is a camera too near as one too far
 ROUNDS = 4  # one without a lean, one with the guess, the rest are steps
 LEANING_M = 0.6  # over so much way the guess comes and goes
 
@@ -62,7 +64,8 @@ def _best_lean(base: Array, left: Array, points: Array, camera_m: tuple[float, f
     for k in range(ROUNDS):
         off_m, slope = _camera(base + lean[:, None] * left, left, points, camera_m)
         off_m -= np.clip(off_m, -SPARE_M, SPARE_M)
-        cost = float((off_m**4).sum())
+        weight = np.where(off_m < 0.0, NEAR, 1.0) * (1.0 + (off_m / PEAK_M) ** 2)
+        cost = float((weight * off_m**2).sum())
         if cost < least:
             least, best = cost, lean
         if least == 0.0:
@@ -70,7 +73,7 @@ def _best_lean(base: Array, left: Array, points: Array, camera_m: tuple[float, f
         if k == 0:
             lean = _guess(off_m, len(base))
         else:
-            weighed = slope.T * (1.0 + (off_m / PEAK_M) ** 2)
+            weighed = slope.T * weight
             lean = lean - np.linalg.solve(weighed @ slope + stiff, weighed @ off_m + stiff @ lean)
         lean = np.clip(lean, *limits_m)
     return best
