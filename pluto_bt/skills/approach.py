@@ -38,7 +38,8 @@ class Approach:
     def look(self, ranges_m: Array, robot: Planar, stamp_s: float, came: Mask) -> Array:
         """Take a round, heard from `robot`; `came`: (k,) whose echo comes from where a moment ago all was free.
 
-        Returns: (n, 3) x m, y m and how far beside that, for each transducer that hears somebody come or go.
+        Returns: (n, 4) x m, y m, how far beside that, and 1 = surely, for each transducer that hears somebody come or go. What changes while
+            the robot stands, no motion of its own can explain.
         """
         ranges_m = self._without_losses(ranges_m)
         self._rounds = [*self._rounds[1 - ROUNDS :], (ranges_m, robot, stamp_s)]
@@ -69,7 +70,8 @@ class Approach:
         c, s, which, ranges_m = math.cos(theta), math.sin(theta), np.flatnonzero(moved), heard_m[:, moved].min(axis=0)
         axis_rad = theta + axes[which, 2]
         apex_x, apex_y = x + c * axes[which, 0] - s * axes[which, 1], y + s * axes[which, 0] + c * axes[which, 1]
-        ends = (apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad))
+        is_sure = math.dist(places[0, :2], places[-1, :2]) + ranges_m * swept_rad < STANDING_M
+        ends = (apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad), is_sure)
         return np.column_stack(ends)
 
 
@@ -118,4 +120,4 @@ def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> t
     return way_m, SLANT * way_m / math.cos(edge_rad) if known else math.inf
 
 
-NOTHING: Array = np.zeros((0, 3))
+NOTHING: Array = np.zeros((0, 4))

@@ -56,8 +56,8 @@ class WalkerWatch:
         self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
-        """(n, 3) x m, y m and how far beside that he may be: who comes nearer, as `Approach` hears it."""
-        heard = [Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s) for x, y, unsure_m in places.tolist()]
+        """(n, 4) x m, y m, how far beside that he may be, and 1 = surely: who comes nearer, as `Approach` hears it."""
+        heard = [Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if is_sure else 1) for x, y, unsure_m, is_sure in places.tolist()]
         seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
@@ -90,7 +90,7 @@ class WalkerWatch:
             nearest = min(known, key=lambda other: other.gap_m(one), default=None)
             if nearest is not None:
                 self._walkers.remove(nearest)
-                one.times = nearest.times + (one.walked_s > nearest.walked_s)  # that he is still there proves nothing
+                one.times = max(one.times, nearest.times + (one.walked_s > nearest.walked_s))  # that he is still there proves nothing
             self._walkers.append(one)
         del self._walkers[:-MOST_WALKERS]
 

@@ -141,8 +141,9 @@ def test_the_ring_hears_somebody_come_from_all_sides_while_the_robot_stands(bear
     walk = [(2.5 - 0.1 * k) for k in range(10)]
     said = heard("pioneer", [(0.0, 0.0, 0.0)] * 10, [(HALL, post(r * math.cos(bearing), r * math.sin(bearing))) for r in walk])
     assert all(len(found) for found in said[5:])
-    x, y, unsure_m = said[-1][0]
+    x, y, unsure_m, is_sure = said[-1][0]
     assert math.dist((x, y), (walk[-1] * math.cos(bearing), walk[-1] * math.sin(bearing))) < 0.25 + unsure_m + 0.1
+    assert is_sure, "nothing but somebody explains that to who stands"
 
 
 def test_it_hears_somebody_come_from_ahead_while_the_robot_drives() -> None:
