@@ -26,7 +26,7 @@ from pluto_bt.skills.outline import Array
 Indices = NDArray[np.intp]
 
 SPACING_M = 0.15  # between stations …
-BEHIND_M, AHEAD_M = 0.6, 3.0  # … from so far behind the robot to so far before it
+BEHIND_M, AHEAD_M = 0.0, 3.0
 SPARE_M = 0.1  # so far off the camera may be without any lean
 STAY, SMOOTH, PEAK_M = 0.06, 1.0, 0.4
 NEAR = 6.0  # times as bad is a camera too near as one too far
@@ -35,7 +35,7 @@ LEANING_M = 0.6  # over so much way the guess comes and goes
 
 
 def leaned(path: Array, foot: int, points: Array, camera_m: tuple[float, float, float], limits_m: tuple[float, float]) -> Array:
-    """The path (n, 3 or more) x, y, heading, …, leaning by least and most `limits_m` some metres around `foot`; headings are those of the new path.
+    """The path (n, 3 or more) x, y, heading, …, leaning by least and most `limits_m` from `foot` on; headings are those of the new path.
 
     Args:
         foot: the point of the path where the robot is.
@@ -43,7 +43,7 @@ def leaned(path: Array, foot: int, points: Array, camera_m: tuple[float, float, 
         camera_m: x, y of the camera in the robot frame, and the distance that it keeps.
     """
     way_m = _way_m(path)
-    stations_m = np.arange(max(0.0, way_m[foot] - BEHIND_M), min(way_m[-1], way_m[foot] + AHEAD_M), SPACING_M)
+    stations_m = np.arange(way_m[foot], min(way_m[-1], way_m[foot] + AHEAD_M), SPACING_M)
     if len(stations_m) < 3:
         return path
     x, y, headings = (np.interp(stations_m, way_m, path[:, k]) for k in range(3))

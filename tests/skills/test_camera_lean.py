@@ -44,8 +44,9 @@ def test_beside_a_straight_wall_nothing_leans(y_m: float) -> None:
 def test_before_a_pocket_the_camera_comes_nearer_to_its_distance(gap_m: float) -> None:
     points = np.vstack((wall((-4.0, 1.45), (-gap_m / 2, 1.45)), wall((gap_m / 2, 1.45), (4.0, 1.45)), wall((-gap_m / 2, 2.6), (gap_m / 2, 2.6))))
     path = straight()
-    lean = leaned(path, len(path) // 2, points, CAMERA, LIMITS)
-    before, after = cameras_off(path, points), cameras_off(lean, points)
+    foot = len(path) // 6
+    lean = leaned(path, foot, points, CAMERA, LIMITS)
+    before, after = cameras_off(path[foot:], points), cameras_off(lean[foot:], points)
     if before.max() <= SPARE_M:
         assert lean is path
         return
