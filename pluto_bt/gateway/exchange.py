@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import deque
 from collections.abc import Callable
 from functools import partial
-from typing import TypeAlias
 
 from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.aside import Work
 from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.desk import Desk
 from pluto_bt.gateway.limits import Limits
@@ -22,14 +23,13 @@ REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
 QUEUE = 16 * 1024
 HEARTBEAT_S = 0.25
 _EVENTS = "events"
-Aside: TypeAlias = Callable[[Callable[[], None]], object]
 
 
 class Exchange:
     """Joins the desk to a carrier. `receive` is thread-safe and does stops at once; `step` does everything else."""
 
     def __init__(
-        self, port: RobotPort, send: Callable[[Down], None], audit: Audit | None = None, aside: Aside = lambda work: work()
+        self, port: RobotPort, send: Callable[[Down], None], audit: Audit | None = None, aside: Callable[[Work], None] = lambda work: work()
     ) -> None:
         """`send` must be thread-safe and never block. `aside` does work that takes long: at once, or in a thread that does one after the other."""
         self._port = port
@@ -99,10 +99,9 @@ class Exchange:
 
     def _prepare(self, ask: Ask, request: MissionOp, stops: int) -> None:
         """Read a document, in whatever thread."""
-        try:
+        with contextlib.suppress(Exception):  # it is raised again where the request is answered
             self._port.prepare_mission(request.op, request.name, request.text)
-        finally:
-            self._prepared.append((ask, stops))
+        self._prepared.append((ask, stops))
 
     def _answer_prepared(self, now_s: float) -> None:
         """What has been read is answered, and who asked for it has his turns again."""

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import socket
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 from pluto_bt.gateway.access import Access
+from pluto_bt.gateway.aside import Aside
 from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.courier import Courier
 from pluto_bt.gateway.exchange import Exchange
@@ -48,8 +47,8 @@ class GatewayLink:
         self._console = console
         self._access = access or Access()
         self._limits = limits or Limits()
-        self._reader: ThreadPoolExecutor | None = None
-        self._exchange = Exchange(port, self._send, audit, self._do_aside)
+        self._aside = Aside()
+        self._exchange = Exchange(port, self._send, audit, self._aside.do)
         self._listener: socket.socket | None = None
         self._web: socket.socket | None = None
         self._courier: Courier | None = None
@@ -110,12 +109,11 @@ class GatewayLink:
         self._process.end()
         if self._courier is not None:
             self._courier.close()
-        if self._reader is not None:
-            self._reader.shutdown(wait=False, cancel_futures=True)
+        self._aside.end()
         self._exchange.gateway_lost()
         for listener in filter(None, (self._listener, self._web)):
             listener.close()
-        self._listener = self._web = self._courier = self._reader = None
+        self._listener = self._web = self._courier = None
 
     @property
     def _is_open(self) -> bool:
@@ -134,11 +132,6 @@ class GatewayLink:
     def _has_room(self) -> bool:
         courier = self._courier
         return courier is not None and courier.waiting_bytes < BACKLOG_BYTES
-
-    def _do_aside(self, work: Callable[[], None]) -> None:
-        """One piece of work after the other, in a thread that begins with the first."""
-        self._reader = self._reader or ThreadPoolExecutor(1, "gateway-reader")
-        self._reader.submit(work)
 
     def _send(self, frame: Down) -> None:
         courier = self._courier

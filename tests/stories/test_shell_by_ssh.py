@@ -54,7 +54,7 @@ class Robot:
                         "-subj", "/CN=robot"], cwd=folder, check=True, capture_output=True)  # fmt: skip
         (folder / "people.toml").write_text(f'[anna]\ntoken = "{TOKEN}"\nscopes = ["watch", "drive"]\n')
         (folder / "people.toml").chmod(0o600)
-        command = [sys.executable, "-m", "pluto_bt", "run", "patrol.xml", "--port", "goals=8,3;13.5,3;2,3.5", "--port", "rounds=50", "--realtime",
+        command = [sys.executable, "-m", "pluto_bt", "run", "patrol.xml", "--port", "goals=8,3;10.5,8;2,3.5", "--port", "rounds=50", "--realtime",
                    "--speed", "4", "--gateway", "127.0.0.1:0", "--gateway-tls", f"{folder}/cert.pem,{folder}/key.pem", "--gateway-tokens",
                    f"{folder}/people.toml", "--ssh", "127.0.0.1:0", "--ssh-keys", f"{folder}/id.pub"]  # fmt: skip
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
