@@ -32,7 +32,7 @@ FIRST_STEPS = """\
 pluto runs missions (behaviour trees in XML) on simulated and real robots. Three things to try:
 
   pluto run t02_go_to_a_place.xml                                         a first drive in the yard, with a summary
-  pluto run patrol.xml --port goals="8,3;13.5,3;2,3.5" --plot patrol.png   a patrol, drawn
+  pluto run patrol.xml --port goals="8,3;10.5,8;2,3.5" --plot patrol.png   a patrol, drawn
   pluto tree patrol.xml                                                   what that mission is made of
 
 `pluto --help` lists all commands."""
