@@ -16,7 +16,7 @@ from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.skills import plan_map, wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
-from pluto_bt.trees.executive import PAUSED
+from pluto_bt.trees.activity import PAUSED
 
 STOP_WITHIN_S = 3.0
 LOCKSTEP_LIMIT_S, THREADS_LIMIT_S = 10.0, 2.0

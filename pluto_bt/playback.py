@@ -34,7 +34,8 @@ from pluto_bt.runtime.clock import StepClock, VirtualClock
 from pluto_bt.skills.jobs import Job
 from pluto_bt.source import Faults, PlutoError
 from pluto_bt.trees import Mission, load_mission, memory
-from pluto_bt.trees.executive import Activity, Executive
+from pluto_bt.trees.activity import Activity
+from pluto_bt.trees.executive import Executive
 
 
 class _Inbox(Inbox):

@@ -36,7 +36,7 @@ from pluto_bt.run_options import Options
 from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, calendar_ns
 from pluto_bt.system import System
 from pluto_bt.trees import Mission, load_mission
-from pluto_bt.trees.executive import ABORTED, SUCCEEDED
+from pluto_bt.trees.activity import ABORTED, SUCCEEDED
 from pluto_bt.trees.journal import Journal
 
 USES_THE_MAP = (WristTour, FindPath, Planning, PathDriver)

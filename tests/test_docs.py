@@ -216,7 +216,8 @@ def test_the_test_of_a_page_passes(tmp_path: Path, page: str, test: str, passed:
 
 
 def shape_of(output: str) -> str:
-    """A run's output without its figures, which every change of the chain moves a little."""
+    """A run's output without its figures, which every change of the chain moves a little, and without the line that each minute of it prints."""
+    output = re.sub(r"^ +[\d.]+ s +× .*\n", "", output, flags=re.MULTILINE)
     return re.sub(r"[0-9a-f]{16}…|-?[\d.]*\d|\s+", "#", output)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from pluto_bt.modules.context import Context
+from pluto_bt.trees.activity import Activity
 from pluto_bt.trees.contracts import CONTRACT, Breach, ContractWatch, Kept
-from pluto_bt.trees.executive import Activity, Executive
+from pluto_bt.trees.executive import Executive
 
 
 class ContractGuardian:

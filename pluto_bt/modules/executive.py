@@ -17,8 +17,8 @@ from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.modules.tick_log import TickLog
 from pluto_bt.runtime.clock import NS
 from pluto_bt.runtime.supervision import Part
+from pluto_bt.trees.activity import RUNNING, Activity
 from pluto_bt.trees.contracts import Kept
-from pluto_bt.trees.executive import RUNNING, Activity
 from pluto_bt.trees.executive import Executive as Core
 
 SHOW_MODULES_EVERY = 10

@@ -17,7 +17,7 @@ from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.skills.reasons import STOPPED
 from pluto_bt.source import did_you_mean
 from pluto_bt.trees import Mission, MissionError
-from pluto_bt.trees.executive import PAUSED, RUNNING
+from pluto_bt.trees.activity import PAUSED, RUNNING
 
 FAULTS_TOLD = 50
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}

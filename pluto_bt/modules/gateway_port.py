@@ -20,7 +20,7 @@ from pluto_bt.modules.tuning import Tuning
 from pluto_bt.modules.why_watch import WhyWatch
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.source import did_you_mean
-from pluto_bt.trees.executive import ABORTED, RUNNING, Activity
+from pluto_bt.trees.activity import ABORTED, RUNNING, Activity
 
 LINK_OF_TARGET = {"motion": "motion", "avoidance": "avoid", "drive": "drive", "wrist": "wrist"}
 ENDS = ("preempted", "timeout")  # reasons that are states of their own on the wire

@@ -11,7 +11,7 @@ from pluto_bt.groot.server import Server
 from pluto_bt.groot.snapshot import Shown
 from pluto_bt.modules.context import Context
 from pluto_bt.runtime.clock import calendar_ns
-from pluto_bt.trees.executive import Activity
+from pluto_bt.trees.activity import Activity
 
 
 class Groot:

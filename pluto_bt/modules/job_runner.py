@@ -17,7 +17,8 @@ from pluto_bt.modules.local_map_shown import LocalMapShown
 from pluto_bt.modules.robot_link import RobotLink
 from pluto_bt.skills.jobs import Job
 from pluto_bt.trees import Mission
-from pluto_bt.trees.executive import PAUSED, RUNNING, SUCCEEDED, Executive
+from pluto_bt.trees.activity import PAUSED, RUNNING, SUCCEEDED
+from pluto_bt.trees.executive import Executive
 
 DONE = {MotionCommand.INVESTIGATE: MovetoStatus.INVESTIGATE_DONE}
 

@@ -17,7 +17,8 @@ from pluto_bt.modules.situation import SituationWatch
 from pluto_bt.record.codec import encode
 from pluto_bt.record.entries import KEYFRAME_EVERY, STATUS_OF_LETTER, Branch, NodeRow, Posted, Situation, Tick, Tree
 from pluto_bt.runtime.clock import NS
-from pluto_bt.trees.executive import Activity, Executive
+from pluto_bt.trees.activity import Activity
+from pluto_bt.trees.executive import Executive
 from pluto_bt.trees.scopes import EMPTY, Scope
 from pluto_bt.trees.tracked import Tracked
 

@@ -15,7 +15,7 @@ from pluto_bt.modules.context import Context
 from pluto_bt.modules.situation import SituationWatch
 from pluto_bt.record.trail import Trail
 from pluto_bt.runtime.clock import NS
-from pluto_bt.trees.executive import ABORTED, FAILED, PAUSED
+from pluto_bt.trees.activity import ABORTED, FAILED, PAUSED
 from pluto_bt.trees.why import NodeAtWork, View, explain
 
 PERIOD_S = 0.1
