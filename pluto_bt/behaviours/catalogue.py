@@ -16,6 +16,7 @@ from pluto_bt.behaviours.jobs import Explore, Investigate, MoveTo, Resume, SetRe
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.look_around import LookAround, SweepWrist
 from pluto_bt.behaviours.make_turn import MakeTurn
+from pluto_bt.behaviours.module_order import StartModule, StopModule
 from pluto_bt.behaviours.nav2 import NAV2_LEAVES
 from pluto_bt.behaviours.navigate_to import NavigateTo
 from pluto_bt.behaviours.paths import FindPath, FollowRay
@@ -32,7 +33,7 @@ from pluto_bt.behaviours.wrist import PointWrist
 ACTIONS: Final[tuple[type[Leaf], ...]] = (
     GoTo, CarGoTo, MakeTurn, MoveTo, PlanPath, FollowPath, NavigateTo, Explore, SetRectangle, Investigate, Resume, DriveVelocity, HoldHeading,
     Stop, Release, WallFollow, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase,
-    TryTurn, ReadAlarms, SetPose, WaitFor, Say,
+    TryTurn, ReadAlarms, SetPose, StartModule, StopModule, WaitFor, Say,
 )  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
 LEAVES: Final = (*ACTIONS, *CONDITIONS, *NAV2_LEAVES)

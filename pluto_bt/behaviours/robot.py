@@ -101,6 +101,9 @@ class Robot(Protocol):
     def read_alarms(self) -> None:
         """Take back the alarms of `imu/alarms` that stay until they are read."""
 
+    def order_module(self, name: str, run: bool) -> bool:
+        """Start a module, after all that it needs, or stop it; False if there is none of that name. `modules` tells what became of it."""
+
     def say(self, text: str) -> None:
         """A line for operators."""
 

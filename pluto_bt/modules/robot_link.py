@@ -174,6 +174,14 @@ class RobotLink:
         """Leave a letter for the module `alarms`."""
         self._post("alarms", SOURCE, ActuatorState(self.now_s()))
 
+    def order_module(self, name: str, run: bool) -> bool:
+        """Ask the system to start or stop it."""
+        try:
+            self._context.order_module(name, run)
+        except KeyError:
+            return False
+        return True
+
     def say(self, text: str) -> None:
         """A line for operators."""
         self._context.say("info", "say", SOURCE, text)
