@@ -24,6 +24,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     walker_memory_s: Annotated[NotNegative, Meta(description="how long who walked out of view is reckoned with")] = 30.0
     starter_s: Annotated[NotNegative, Meta(description="so long after its start somebody is about: who started it")] = 0.0
     walker_gap_s: Annotated[Positive, Meta(description="nobody walked in where it was seen to be free so short a time ago")] = 0.6
+    stranger_gap_s: Annotated[Positive, Meta(description="the same for somebody whom no sensor found, while others walk about")] = 0.6
     hear_m: Annotated[Positive, Meta(description="echoes farther than this are not used")] = 2.5
     laser_stale_s: Annotated[NotNegative, Meta(description="older scans mean zero velocity; 0 = the laser's delay and 1.25 periods")] = 0.0
     laser_holes: Annotated[float, Meta(ge=0, le=1, description="share of beams without a usable number above which a scan is not trusted")] = 0.25

@@ -177,6 +177,7 @@ class StopFilter:
             return self._first_trouble(
                 space.points, space.count, self._outline.planes, self._rim, space.seen, space.stamps, *space.corner_m, *robot, figures,
                 twist[0] * share, twist[1] * share, now_s - p.free_memory_s, walkers, now_s - p.walker_gap_s,
+                now_s - p.stranger_gap_s,
             )  # fmt: skip
 
         trouble = trouble_at(1.0)

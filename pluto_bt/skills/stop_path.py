@@ -19,6 +19,7 @@ LONGEST_S = 8.0
 BODY_M, SLIM_M = 0.2, 0.1  # who touches the outline has his middle about so far outside of it, give or take the second
 FAN_RAD = math.radians(15.0)  # a corner may be touched from all directions between its two edges' normals: one is looked at in each so much
 WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS, IN_VIEW = range(7)  # columns of the walkers
+STRANGER = -1.0  # in place of IN_VIEW: somebody whom no sensor found
 SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, LEAST_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(11)
 
 
@@ -26,7 +27,7 @@ SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M
 def first_trouble(
     points: Array, count: int, planes: Array, rim: Array, seen: Array, stamps: Array, corner_x_m: float, corner_y_m: float,
     x_m: float, y_m: float, theta_rad: float, figures: Array, speed_mps: float, turn_rate_radps: float, known_since_s: float,
-    walkers: Array, fresh_since_s: float,
+    walkers: Array, fresh_since_s: float, lately_since_s: float,
 ) -> tuple[int, int, float]:  # fmt: skip
     """Drive the command, brake, and look on the way.
 
@@ -37,7 +38,7 @@ def first_trouble(
         speed_mps, turn_rate_radps: the command.
         known_since_s: cells seen before are not known any more.
         walkers: (k, 7) the discs in which the middles of walkers are; see `Walker.row`.
-        fresh_since_s: nobody who is out of view is where it was seen to be free since.
+        fresh_since_s, lately_since_s: nobody who is out of view is where it was seen to be free since, and no STRANGER.
     Returns: (CLEAR, -1, 0), (MEETS, point, s), (UNSEEN, rim point, s) or (WALKER, rim point, s): what comes first, and when.
     """
     v, w = figures[SPEED], figures[TURN_RATE]
@@ -57,7 +58,7 @@ def first_trouble(
             creep_mps = figures[CREEP_MPS]
             kind, which = rim_in_danger(
                 rim, seen, stamps, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s,
-                walkers, fresh_since_s, t_s,
+                walkers, fresh_since_s, lately_since_s, t_s,
             )  # fmt: skip
             if kind != CLEAR:
                 return kind, which, t_s
@@ -103,7 +104,8 @@ def nearest(points: Array, count: int, planes: Array, x: float, y: float, turned
 @inline_kernel
 def rim_in_danger(
     rim: Array, seen: Array, stamps: Array, corner_x_m: float, corner_y_m: float, x_m: float, y_m: float, theta_rad: float,
-    x: float, y: float, turned: float, v: float, w: float, creep_mps: float, known_since_s: float, walkers: Array, fresh_since_s: float, t_s: float,
+    x: float, y: float, turned: float, v: float, w: float, creep_mps: float, known_since_s: float, walkers: Array, fresh_since_s: float,
+    lately_since_s: float, t_s: float,
 ) -> tuple[int, int]:  # fmt: skip
     """Which point of the rim moves outwards, faster than creeping, where nothing was ever seen, or where a walker may be by then."""
     c0, s0 = math.cos(theta_rad), math.sin(theta_rad)
@@ -120,20 +122,21 @@ def rim_in_danger(
             px, py = px + BODY_M * nx, py + BODY_M * ny
             px, py = at_x + c * px - s * py, at_y + s * px + c * py
             column, row = cell_of(px, corner_x_m), cell_of(py, corner_y_m)
-            is_fresh = 0 <= row < seen.shape[0] and 0 <= column < seen.shape[1] and seen[row, column] >= fresh_since_s
-            if is_walked_to(walkers, px, py, t_s, is_fresh):
+            seen_s = seen[row, column] if 0 <= row < seen.shape[0] and 0 <= column < seen.shape[1] else NEVER
+            if is_walked_to(walkers, px, py, t_s, seen_s >= fresh_since_s, seen_s >= lately_since_s):
                 return WALKER, i
     return CLEAR, -1
 
 
 @inline_kernel
-def is_walked_to(walkers: Array, px: float, py: float, t_s: float, is_fresh: bool) -> bool:
-    """Whether the middle of a walker may be at a point after `t_s`; of those out of view none is where it `is_fresh`."""
+def is_walked_to(walkers: Array, px: float, py: float, t_s: float, is_fresh: bool, is_late: bool) -> bool:
+    """Whether the middle of a walker may be at a point after `t_s`; of those out of view none is where it `is_fresh`, no stranger where `is_late`."""
     found = False
     for k in range(walkers.shape[0]):
         dx, dy = walkers[k, WALKER_X] + walkers[k, DRIFT_X] * t_s - px, walkers[k, WALKER_Y] + walkers[k, DRIFT_Y] * t_s - py
         near_m = walkers[k, SPREAD_M] + walkers[k, GROWTH_MPS] * t_s + SLIM_M
-        if dx * dx + dy * dy < near_m * near_m and (walkers[k, IN_VIEW] != 0.0 or not is_fresh):
+        is_elsewhere = is_fresh if walkers[k, IN_VIEW] == 0.0 else is_late and walkers[k, IN_VIEW] == STRANGER
+        if dx * dx + dy * dy < near_m * near_m and not is_elsewhere:
             found = True
     return found
 

@@ -15,6 +15,7 @@ from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.skills.movers import Mask, Movers, came_closer
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.scans_before import ScansBefore
+from pluto_bt.skills.stop_path import STRANGER
 from pluto_bt.skills.walker import BODY_M, IN_VIEW_S, Walker
 
 REACH_M = 6.0  # farther away, the beams are too far apart to tell
@@ -115,5 +116,5 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, COLUMNS))
-ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, 0.0]])  # somebody out of view, nobody knows where
+ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, STRANGER]])  # somebody out of view, nobody knows where
 NO_BODY: Array = np.zeros((0, 3))

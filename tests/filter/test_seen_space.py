@@ -161,8 +161,8 @@ def trouble(
     seen = np.full_like(one.seen, 0.0 if is_seen else NEVER)
     figures = np.array([*now, *LIMITS, 0.2, OUTLINE.reach_m, 0.01, 0.02, 0.0, 0.045])
     walkers = NOBODY if walker is None else np.array([walker.row(0.0)])
-    robot = (0.0, 0.0, 0.0)
-    return first_trouble(points, 1, OUTLINE.planes, RIM, seen, one.stamps, *one.corner_m, *robot, figures, *told, -1.0, walkers, fresh_since_s)
+    known = (-1.0, walkers, fresh_since_s, fresh_since_s)
+    return first_trouble(points, 1, OUTLINE.planes, RIM, seen, one.stamps, *one.corner_m, 0.0, 0.0, 0.0, figures, *told, *known)
 
 
 def plain_motor(now: float, wanted: float, faster: float, slower: float) -> float:
