@@ -24,7 +24,7 @@ GROUPS = {
     "rubbish and bombs": tuple(name for name in STREAMS if name not in (*ENDLESS, *FLOODS)),
 }  # fmt: skip
 GROUP_S, PING_EVERY_S, SETTLE_S = 12.0, 0.006, 3.0
-TRIALS, MOVING_MPS, PATIENCE_S = 100, 0.1, 30.0
+TRIALS, MOVING_MPS, PATIENCE_S = 150, 0.1, 30.0
 
 
 class Live(NamedTuple):
@@ -106,7 +106,7 @@ def _stops(live: Live) -> Iterator[BenchRow]:
     finally:
         flood.kill()
         flood.communicate()
-    p99, worst = np.percentile(delays_ms, [99.0, 100.0], method="higher")
+    p99, worst = np.percentile(delays_ms, [99.0, 100.0], method="inverted_cdf")  # one in a hundred may be later
     note = f"{TRIALS} stops, median {float(np.median(delays_ms)):.1f} ms"
     yield BenchRow("<stop/> during a flood to a command of zero, p99", float(p99), "ms", "<= 20", note)
     yield BenchRow("<stop/> during a flood to a command of zero, worst", float(worst), "ms", "<= 100")
