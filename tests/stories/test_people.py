@@ -39,7 +39,7 @@ def test_the_tail_does_not_swing_into_somebody_who_came_round_from_ahead(bearing
 
 
 @pytest.mark.parametrize(("bearing_deg", "speed_mps"), [(-55, 1.3), (-39, 1.0), (-39, 1.3), (8, 1.0), (39, 1.3), (55, 1.3)])
-def test_four_sonars_in_front_hear_who_comes_from_ahead_in_time(bearing_deg: int, speed_mps: float) -> None:
+def test_the_front_array_hears_who_comes_from_ahead_in_time(bearing_deg: int, speed_mps: float) -> None:
     bearing = math.radians(bearing_deg)
     one = among("jbot", (6.0, 0.0), speed_mps, [(1.5 + 4.0 * math.cos(bearing), 4.0 * math.sin(bearing)), (1.5, 0.0), (-6.0, -6.0)], 60.0)
     assert touches(one) == []
