@@ -178,7 +178,7 @@ def test_after_a_pause_the_command_is_given_again_and_the_pause_is_no_time(stage
 def test_without_a_robot_a_leaf_fails_with_not_connected(leaf: Any) -> None:
     given = {
         "goal": "1;1", "angle_deg": "90", "heading_deg": "0", "voltage_v": "24", "area": "a", "topic": "wrist/state", "field": "flags", "value": "1",
-        "rectangle": "2;3", "radius_m": "2", "path": "1,2;3,4", "pose": "1;2;90",
+        "rectangle": "2;3", "radius_m": "2", "path": "1,2;3,4", "pose": "1;2;90", "module": "drive",
     }  # fmt: skip
     ports = " ".join(f'{name}="{given[name]}"' for name, port in leaf.input_ports().items() if port.required)
     reason = 'reason="{why}"' if "reason" in leaf.output_ports() else ""
