@@ -59,11 +59,10 @@ class Channels:
     def leave(self, topic: str, flow: Flow) -> None:
         """Nobody wants this flow any more; an empty lane goes with it."""
         lanes = self._lanes[topic]
-        for key in [(flow.period_s, k) for k in range(_most(flow.period_s))]:
-            if key in lanes:
-                lanes[key].leave(flow)
-                if not lanes[key]:
-                    del lanes[key]
+        for key in [key for key in lanes if key[0] == flow.period_s]:
+            lanes[key].leave(flow)
+            if not lanes[key]:
+                del lanes[key]
 
     def offer(self, newest: Newest, now_s: float) -> Iterator[Flow]:
         """A new value: serve the lanes that are due; yields the flows for whom it waits."""

@@ -127,8 +127,10 @@ class Hub:
     def _hand_out(self, flows: Iterable[Flow], touched: dict[int, None]) -> None:
         sessions = self._sessions
         for flow in flows:
-            sessions[flow.client].subscriptions.put(flow)
-            touched[flow.client] = None
+            session = sessions.get(flow.client)
+            if session is not None:
+                session.subscriptions.put(flow)
+                touched[flow.client] = None
 
     # for sessions ------------------------------------------------------------------------------------------------
     def ask(self, session: Session, request: AnyRequest) -> None:

@@ -12,6 +12,8 @@ from pluto_bt.blackboard.messages import ActuatorState
 Word = Annotated[str, Meta(max_length=128)]
 Seconds = Annotated[float, Meta(ge=0.0, le=1e9)]
 Vector = tuple[float, ...]
+LEAST_RATE_HZ = 1e-3
+"""A value in a quarter of an hour; of much less the period is no number any more."""
 
 
 class Request(msgspec.Struct, frozen=True, kw_only=True, tag=True, tag_field="_", forbid_unknown_fields=True, gc=False):
@@ -56,6 +58,11 @@ class Subscribe(Request, frozen=True, kw_only=True):
     topic: Annotated[str, Meta(min_length=1)]
     max_rate_hz: Annotated[float, Meta(ge=0.0, le=1e6)] = 0.0
     on_change: bool = False
+
+    def __post_init__(self) -> None:
+        """Raises: ValueError for a rate that is nearly 0."""
+        if 0.0 < self.max_rate_hz < LEAST_RATE_HZ:
+            raise ValueError(f'expected max_rate_hz 0 (each value) or at least {LEAST_RATE_HZ:g}, found "{self.max_rate_hz:g}"')
 
 
 class Unsubscribe(Request, frozen=True, kw_only=True):

@@ -101,6 +101,9 @@ class Session:
                 self._do(request, now_s)
         except RefusedError as refusal:
             self.say(Error(id=id, code=refusal.code, text=refusal.text, line=message.line, column=message.column))
+        except Exception as error:  # a fault of ours ends this connection, not those of all the others
+            self.say(Error(id=id, code="internal", text=f"<{message.tag}>: {type(error).__name__}: {error}"))
+            self._connection.close()
 
     def _may_speak(self, request: AnyRequest) -> bool:
         """A stop always; else what the place and the token demand."""

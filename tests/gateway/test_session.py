@@ -408,3 +408,25 @@ def test_what_a_client_has_just_changed_is_what_he_gets(story: Story) -> None:
         assert (ok.tag, value.findtext("value")) == ("ok", str(i))
         for _ in range(i % 15):
             story.step()
+
+
+@pytest.mark.parametrize("rate", ["1e-310", "5e-324", "0.0009"])
+def test_a_rate_of_nearly_nothing_is_refused_and_nobody_else_notices(story: Story, rate: str) -> None:
+    odd, other = story.client(), story.client()
+    story.says(other, '<subscribe topic="Localization/Pose"/>')
+    answers = story.says(odd, f'<subscribe topic="Localization/Pose"/><subscribe topic="Localization/*" max_rate_hz="{rate}"/>')
+    assert brief(answers) == ["ok", "error invalid"] and "at least 0.001" in answers[1].text
+    odd.close()
+    pose_at(story, 1.0)
+    assert brief(story.says(other, "")) == ["value"]
+
+
+def test_a_fault_of_ours_ends_the_connection_that_met_it(story: Story, monkeypatch: pytest.MonkeyPatch) -> None:
+    client, other = story.client(), story.client()
+    story.says(client, '<subscribe topic="Localization/Pose"/>')
+    monkeypatch.setattr(story.gateway.hub, "describe", lambda request: 1 / 0)
+    (error,) = story.says(client, '<describe id="d"/><ping/>')
+    assert (error.get("code"), error.get("id"), client.is_over) == ("internal", "d", True)
+    client.close()
+    pose_at(story, 1.0)
+    assert brief(story.says(other, "<ping/>")) == ["pong"]
