@@ -22,7 +22,6 @@ from pluto_bt.source.toml_reader import read_toml
 Scope = Literal["watch", "drive", "tune", "admin"]
 SCOPES: tuple[Scope, ...] = get_args(Scope)
 LEAST_TOKEN = 16
-_LOOKS = {"lease": ("query",), "mission": ("list", "state", "fetch", "check"), "params": ("get",)}  # ops that only look
 
 
 class Person(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -80,17 +79,17 @@ class Access(msgspec.Struct, frozen=True):
 
 def scope_of(request: AnyRequest) -> str:
     """What a client must be allowed to do for this request."""
-    op = getattr(request, "op", "")
+    if request.only_looks:
+        return "watch"
     match request:
         case requests.Params():
-            return "watch" if op in _LOOKS["params"] else "tune"
-        case requests.Lease():
-            return "watch" if op in _LOOKS["lease"] else "drive"
-        case requests.MissionOp():
-            return "watch" if op in _LOOKS["mission"] else "drive"
+            return "tune"
         case requests.ModuleOp():
             return "admin"
-        case requests.Command() | requests.Run() | requests.Cancel() | requests.Release() | requests.SetTopic():
+        case (
+            requests.Lease() | requests.MissionOp() | requests.Command() | requests.Run() | requests.Cancel() | requests.Release()
+            | requests.SetTopic()
+        ):  # fmt: skip
             return "drive"
     return "watch"
 

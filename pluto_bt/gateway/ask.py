@@ -8,13 +8,12 @@ from typing import Literal
 from xml.etree.ElementTree import Element
 
 from pluto_bt.gateway.errors import GatewayError
+from pluto_bt.gateway.requests import looks
 from pluto_bt.gateway.xml_text import Attribute
 
 Fate = Literal["again", "lost", "moot"]
 
-_LOOKS = {"ping", "describe", "get", "subscribe", "tree", "why", "modules", "log"}
 _STOPS = {"stop", "estop"}
-_LOOKING_OPS = {"lease": {"query"}, "mission": {"list", "state", "fetch", "check"}, "params": {"get"}}
 _ONCE_A_SESSION = {"command", "run"}
 
 
@@ -81,5 +80,5 @@ def fate(tag: str, attributes: dict[str, Attribute], has_session: bool) -> Fate:
     """
     if tag == "unsubscribe":
         return "moot"
-    looks = tag in _LOOKS or tag in _STOPS or attributes.get("op", "get") in _LOOKING_OPS.get(tag, ())
-    return "again" if looks or (has_session and tag in _ONCE_A_SESSION) else "lost"
+    is_harmless = tag in _STOPS or looks(tag, str(attributes.get("op", "get")))
+    return "again" if is_harmless or (has_session and tag in _ONCE_A_SESSION) else "lost"

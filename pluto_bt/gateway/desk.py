@@ -18,7 +18,7 @@ from pluto_bt.gateway.port import RefusedError, RobotPort
 from pluto_bt.gateway.replies import AnyReply, Error, LeaseState, Ok, with_id
 from pluto_bt.gateway.requests import actuator
 from pluto_bt.gateway.runs import Runs
-from pluto_bt.gateway.wire import Answer, Ask, source_of
+from pluto_bt.gateway.wire import Answer, Ask, Key, source_of
 
 _MOVES = {"start", "resume"}
 
@@ -98,13 +98,13 @@ class Desk:
         for key in self._callers.all_gone():
             self._end(key)
 
-    def _end(self, key: str | None) -> None:
+    def _end(self, key: Key | None) -> None:
         held = self._leases.end(key) if key is not None else None
         if held is not None:
             self._lost(held, "ended with his connection")
 
     # answers -----------------------------------------------------------------------------------------------------
-    def _answer(self, ask: Ask, key: str, stops: int, now_s: float) -> tuple[AnyReply, Sequence[AnyReply]]:
+    def _answer(self, ask: Ask, key: Key, stops: int, now_s: float) -> tuple[AnyReply, Sequence[AnyReply]]:
         """The direct reply and what follows it at once. Raises: RefusedError."""
         request = ask.request
         match request:
@@ -118,7 +118,7 @@ class Desk:
                 return Ok(), inquiries.log(self._port, request)
         return self._simple(ask, key, now_s), []
 
-    def _simple(self, ask: Ask, key: str, now_s: float) -> AnyReply:
+    def _simple(self, ask: Ask, key: Key, now_s: float) -> AnyReply:
         request, port = ask.request, self._port
         match request:
             case requests.Get():
@@ -145,10 +145,10 @@ class Desk:
         return Ok()
 
     def _act(
-        self, ask: Ask, request: requests.Command | requests.Run, key: str, stops: int, now_s: float
+        self, ask: Ask, request: requests.Command | requests.Run, key: Key, stops: int, now_s: float
     ) -> tuple[AnyReply, Sequence[AnyReply]]:
         """A command or a run: once for each id of a session, for the holder of the lease, if nothing forbids it."""
-        known = self._outcomes.find(ask.session, request)
+        known = self._outcomes.find(ask.key, request)
         if known is not None:
             return known.direct, known.later
         self._require_lease(key, now_s)
@@ -157,7 +157,7 @@ class Desk:
         if state in ("running", "stopping"):
             raise RefusedError("wrong-state", f'a mission is {state}; pause it first: <mission op="pause"/>')
         reply: AnyReply
-        outcome = self._outcomes.begin(ask.session, request)
+        outcome = self._outcomes.begin(ask.key, request)
         try:
             if isinstance(request, requests.Run):
                 reply = replies.Ack(id=request.id, run=self._runs.start(key, request, outcome, source_of(ask)))
@@ -165,13 +165,13 @@ class Desk:
                 self._port.post_command(request.target, actuator(request, now_s), source_of(ask))
                 reply = Ok(id=request.id)
         except BaseException:
-            self._outcomes.forget(ask.session, request)  # nothing was done: the same id may be tried again
+            self._outcomes.forget(ask.key, request)  # nothing was done: the same id may be tried again
             raise
         outcome.add(reply)
         self._stop_again(stops, ask)
         return reply, []
 
-    def _require_lease(self, key: str, now_s: float) -> None:
+    def _require_lease(self, key: Key, now_s: float) -> None:
         if not self._leases.holds(key, now_s):
             held = self._leases.held
             raise RefusedError("no-lease", f'the lease is held by {held.name if held else "nobody"}; acquire it first: <lease op="acquire"/>')
@@ -188,8 +188,8 @@ class Desk:
         if stops != self.stops:
             self._port.stop(source_of(ask))
 
-    def _lease(self, request: requests.Lease, key: str, ask: Ask, now_s: float) -> LeaseState:
-        name = ask.name or ask.session or key
+    def _lease(self, request: requests.Lease, key: Key, ask: Ask, now_s: float) -> LeaseState:
+        name = ask.name or ask.session or f"#{ask.client}"
         match request.op:
             case "acquire":
                 self._leases.acquire(key, name, request.ttl_s, request.on_loss, now_s)
@@ -217,7 +217,7 @@ class Desk:
         if self._runs.active is not None and self._runs.active.key == held.key:
             self._runs.finish(state, state, source)
 
-    def _cancel(self, run: str, key: str, now_s: float, source: str) -> None:
+    def _cancel(self, run: str, key: Key, now_s: float, source: str) -> None:
         active = self._runs.active
         if active is None or active.run != run:
             raise RefusedError("wrong-state", f'run "{run}" is not going on; ' + (f'"{active.run}" is' if active else "none is"))
@@ -225,7 +225,7 @@ class Desk:
             self._require_lease(key, now_s)
         self._runs.finish("cancelled", "cancelled", f"{source} cancelled the run")
 
-    def _mission(self, ask: Ask, request: requests.MissionOp, key: str, stops: int) -> AnyReply:
+    def _mission(self, ask: Ask, request: requests.MissionOp, key: Key, stops: int) -> AnyReply:
         port = self._port
         if request.op in _MOVES:
             self._require_movable(stops)
@@ -240,7 +240,7 @@ class Desk:
             self._stop_again(stops, ask)
         return Ok()
 
-    def _tell(self, key: str, reply: AnyReply) -> None:
+    def _tell(self, key: Key, reply: AnyReply) -> None:
         client = self._callers.client_of(key)
         if client is not None:
             self._send(Answer(client, "later", reply))

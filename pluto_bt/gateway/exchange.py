@@ -15,7 +15,7 @@ from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
 from pluto_bt.gateway.requests import MissionOp
-from pluto_bt.gateway.turns import Turns, line_of
+from pluto_bt.gateway.turns import Turns
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamped, Up, Watch, Welcome, pack_value
 
 REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
@@ -40,7 +40,7 @@ class Exchange:
         self._inbox: deque[tuple[Up, int]] = deque()  # the one thing that both threads touch
         self._queue = Turns()
         self._aside = aside
-        self._prepared: deque[tuple[Ask, int]] = deque()
+        self._prepared: deque[tuple[int, Ask, int]] = deque()
         self._watched: tuple[str, ...] = ()
         self._sent_seq: dict[str, int] = {}
         self._event_seq = 0
@@ -87,8 +87,7 @@ class Exchange:
 
     def _handle(self, frame: Up, stops: int, now_s: float) -> None:
         if isinstance(frame, Ask) and isinstance(frame.request, MissionOp) and frame.request.op in ("load", "check"):
-            self._queue.hold(line_of(frame))
-            self._aside(partial(self._prepare, frame, frame.request, stops))
+            self._aside(partial(self._prepare, self._queue.hold(), frame, frame.request, stops))
             self._answer_prepared(now_s)
         elif isinstance(frame, Ask):
             self._desk.handle(frame, stops, now_s)
@@ -97,17 +96,20 @@ class Exchange:
         elif isinstance(frame, Watch):
             self._watch(frame.topics)
 
-    def _prepare(self, ask: Ask, request: MissionOp, stops: int) -> None:
-        """Read a document, in whatever thread."""
-        with contextlib.suppress(Exception):  # it is raised again where the request is answered
-            self._port.prepare_mission(request.op, request.name, request.text)
-        self._prepared.append((ask, stops))
+    def _prepare(self, hold: int, ask: Ask, request: MissionOp, stops: int) -> None:
+        """Read a document, in whatever thread, if anybody still wants it."""
+        if self._queue.is_wanted(hold, ask):
+            with contextlib.suppress(Exception):  # it is raised again where the request is answered
+                self._port.prepare_mission(request.op, request.name, request.text)
+        self._prepared.append((hold, ask, stops))
 
     def _answer_prepared(self, now_s: float) -> None:
         """What has been read is answered, and who asked for it has his turns again."""
         while self._prepared:
-            ask, stops = self._prepared.popleft()
-            if self._queue.free(line_of(ask)):  # else the gateway through which he asked is no more
+            hold, ask, stops = self._prepared.popleft()
+            is_wanted = self._queue.is_wanted(hold, ask)
+            self._queue.free(hold)
+            if is_wanted:  # else the gateway through which he asked is no more, or he himself
                 self._desk.handle(ask, stops, now_s)
 
     def _answer(self, answer: Answer) -> None:

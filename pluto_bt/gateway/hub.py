@@ -136,7 +136,8 @@ class Hub:
     def ask(self, session: Session, request: AnyRequest) -> None:
         """Hand a request to the executive."""
         self._asked.add(session.client)
-        self._send(Ask(session.client, session.session, session.name, request, session.peer))
+        person = session.name if self.access.keys else ""
+        self._send(Ask(session.client, session.session, session.name, request, session.peer, person))
 
     def describe(self, request: Describe) -> Description:
         """What exists. Raises: RefusedError."""

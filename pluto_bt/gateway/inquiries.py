@@ -8,7 +8,7 @@ from pluto_bt.gateway.leases import Held
 from pluto_bt.gateway.port import RefusedError, RobotPort
 from pluto_bt.gateway.replies import AnyReply, LeaseState, LogLine, Mission, Tree, Value
 from pluto_bt.gateway.subscriptions import ALIASES
-from pluto_bt.gateway.wire import pack_value
+from pluto_bt.gateway.wire import Key, pack_value
 from pluto_bt.source import did_you_mean
 
 _LEVELS = ("info", "warning", "error")
@@ -57,7 +57,7 @@ def mission(port: RobotPort, request: requests.MissionOp) -> Mission | None:
     return None
 
 
-def lease(held: Held | None, key: str, now_s: float) -> LeaseState:
+def lease(held: Held | None, key: Key, now_s: float) -> LeaseState:
     """The lease as `key` sees it."""
     if held is None:
         return LeaseState(holder="", mine=False, epoch=0, expires_s=0.0)

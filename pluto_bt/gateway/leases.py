@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pluto_bt.gateway.port import OnLoss, RefusedError
+from pluto_bt.gateway.wire import Key
 
 
 @dataclass(frozen=True, slots=True)
 class Held:
     """A lease that somebody holds. `key` is his session or connection, `name` what people call him."""
 
-    key: str
+    key: Key
     name: str
     epoch: int
     until_s: float
@@ -31,11 +32,11 @@ class Leases:
         """The lease as it stands (an expired one stands until `expire` is called)."""
         return self._held
 
-    def holds(self, key: str, now_s: float) -> bool:
+    def holds(self, key: Key, now_s: float) -> bool:
         """True if `key` may drive at `now_s`."""
         return self._held is not None and self._held.key == key and now_s < self._held.until_s
 
-    def acquire(self, key: str, name: str, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held:
+    def acquire(self, key: Key, name: str, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held:
         """Take a free lease; the holder renews his by it. Call `expire` first. Raises: RefusedError `lease-held`."""
         held = self._held
         if held is not None and held.key != key:
@@ -43,21 +44,21 @@ class Leases:
             raise RefusedError("lease-held", f'the lease is held by {held.name} for another {left_s:.1f} s; wait, or op="take" takes it away')
         return self._give(key, name, held.epoch if held else self._next_epoch(), ttl_s, on_loss, now_s)
 
-    def take(self, key: str, name: str, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held | None:
+    def take(self, key: Key, name: str, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held | None:
         """Take the lease from whoever holds it; the lease that he lost, None if nobody did."""
         lost = self._held if self._held is not None and self._held.key != key else None
         keep = self._held is not None and lost is None
         self._give(key, name, self._epoch if keep else self._next_epoch(), ttl_s, on_loss, now_s)
         return lost
 
-    def renew(self, key: str, now_s: float) -> Held:
+    def renew(self, key: Key, now_s: float) -> Held:
         """Hold on for another ttl. Raises: RefusedError `no-lease`."""
         held = self._held
         if held is None or not self.holds(key, now_s):
             raise RefusedError("no-lease", f"expected the holder of the lease; {held.name if held else 'nobody'} holds it; acquire it first")
         return self._give(key, held.name, held.epoch, held.ttl_s, held.on_loss, now_s)
 
-    def end(self, key: str) -> Held | None:
+    def end(self, key: Key) -> Held | None:
         """`key` lets go, or is gone; the lease that ended, None if he held none."""
         held = self._held
         if held is None or held.key != key:
@@ -74,6 +75,6 @@ class Leases:
         self._epoch += 1
         return self._epoch
 
-    def _give(self, key: str, name: str, epoch: int, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held:
+    def _give(self, key: Key, name: str, epoch: int, ttl_s: float, on_loss: OnLoss, now_s: float) -> Held:
         self._held = Held(key, name, epoch, now_s + ttl_s, ttl_s, on_loss)
         return self._held

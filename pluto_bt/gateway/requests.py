@@ -21,6 +21,11 @@ class Request(msgspec.Struct, frozen=True, kw_only=True, tag=True, tag_field="_"
 
     id: Word = ""
 
+    @property
+    def only_looks(self) -> bool:
+        """True for what changes nothing on the robot: whoever may watch may ask it, and it may be asked again, or be forgotten with its client."""
+        return looks(_TAGS[type(self)], getattr(self, "op", ""))
+
 
 class SayHello(Request, frozen=True, kw_only=True):
     """Who the client is; `session` is the name under which `command` and `run` act once."""
@@ -193,6 +198,15 @@ ELEMENTS: dict[str, type[Any]] = {
     "command": Command, "run": Run, "cancel": Cancel, "stop": Stop, "estop": Estop, "release": Release, "mission": MissionOp,
     "tree": ShowTree, "why": Why, "modules": ShowModules, "module": ModuleOp, "params": Params, "set": SetTopic, "log": Log, "bye": Bye,
 }  # fmt: skip
+
+_TAGS = {kind: tag for tag, kind in ELEMENTS.items()}
+_LOOKS = frozenset({"ping", "describe", "get", "subscribe", "tree", "why", "modules", "log"})
+_LOOKING_OPS = {"lease": ("query",), "mission": ("list", "state", "fetch", "check"), "params": ("get",)}
+
+
+def looks(tag: str, op: str) -> bool:
+    """True if the element with this `op` ("" = it has none) only looks."""
+    return tag in _LOOKS or op in _LOOKING_OPS.get(tag, ())
 
 
 def actuator(request: Command, now_s: float) -> ActuatorState:

@@ -9,10 +9,11 @@ from pluto_bt.gateway.outcomes import Outcome
 from pluto_bt.gateway.port import RobotPort, RunState
 from pluto_bt.gateway.replies import RUN_FINAL, AnyReply, Progress, Result
 from pluto_bt.gateway.requests import Run
+from pluto_bt.gateway.wire import Key
 
 PROGRESS_S = 0.2
 NOTHING_SHOWN = RunState(state="")
-Tell = Callable[[str, AnyReply], None]
+Tell = Callable[[Key, AnyReply], None]
 """(key of the client, reply)."""
 
 
@@ -21,7 +22,7 @@ class Active:
     """A run that is not over. `key` is its owner's session or connection."""
 
     run: str
-    key: str
+    key: Key
     id: str
     outcome: Outcome
     shown: RunState = NOTHING_SHOWN
@@ -41,7 +42,7 @@ class Runs:
         """The run that is not over, if any."""
         return self._active
 
-    def start(self, key: str, request: Run, outcome: Outcome, source: str) -> str:
+    def start(self, key: Key, request: Run, outcome: Outcome, source: str) -> str:
         """Begin a run; the robot preempts the one before, unless he refuses the new one. Raises: RefusedError."""
         run = self._port.run_node(request.node, request.ports, request.deadline_s, source)
         if self._active is not None:

@@ -12,7 +12,7 @@ from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.replies import AnyReply, Item
-from pluto_bt.gateway.requests import AnyRequest
+from pluto_bt.gateway.requests import AnyRequest, MissionOp
 
 TYPES: dict[str, type[Message]] = {topic.name: topic.type for topic in TOPICS}
 FRAME_LIMIT = 64 * 1024 * 1024
@@ -23,19 +23,36 @@ class Frame(msgspec.Struct, frozen=True, tag=True, gc=False):
     """Root of all frames."""
 
 
+Key: TypeAlias = int | tuple[str, str]
+"""Whose a lease is: a connection, or (person, his named session). The two never meet, whatever a client calls himself."""
+
+
 class Ask(Frame, frozen=True):
-    """Up: a client's request. `client` counts connections; `session` is "" without a named session; `name` and `peer` (his address) are for logs."""
+    """Up: a client's request. `client` counts connections; `session` is "" without a named session; `name` and `peer` (his address) are for logs.
+    `person` is his name where names are proved (by token or certificate), else "": a session of one is closed to the others.
+    """
 
     client: int
     session: str
     name: str
     request: AnyRequest
     peer: str = ""
+    person: str = ""
+
+    @property
+    def key(self) -> Key:
+        """Under what his lease and outcomes stand."""
+        return (self.person, self.session) if self.session else self.client
 
 
 def source_of(ask: Ask) -> str:
     """What logs call the client."""
     return ask.name or ask.session or f"client {ask.client}"
+
+
+def document_bytes(frame: Frame) -> int:
+    """About the size of the document that a frame brings; 0 without one."""
+    return len(frame.request.text) if isinstance(frame, Ask) and isinstance(frame.request, MissionOp) else 0
 
 
 class Gone(Frame, frozen=True):

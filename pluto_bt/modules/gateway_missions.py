@@ -23,6 +23,8 @@ FAULTS_TOLD = 50
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 _INCLUDE = re.compile(r"<\s*include\b")
 _NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
+PREPARED = 64
+"""Missions that were read and wait to be fetched."""
 
 
 class GatewayMissions:
@@ -31,7 +33,7 @@ class GatewayMissions:
     def __init__(self, context: Context) -> None:
         self._system, self._board, self._latch = context.system, context.board, context.latch
         self._loaded: Mission | None = None
-        self._prepared: dict[tuple[str, str, str], Mission | RefusedError | None] = {}  # by op, name and text
+        self._prepared: dict[tuple[str, str, str], Mission | RefusedError] = {}  # by op, name and text
 
     def state(self) -> MissionState:
         """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
@@ -81,18 +83,20 @@ class GatewayMissions:
         """Read a document in whatever thread; the next `act` with the same words takes what came of it."""
         try:
             mission = self._named(name, text)
-            self._prepared[op, name, text] = mission if op == "load" else None
+            self._prepared[op, name, text] = mission
         except RefusedError as refusal:
             self._prepared[op, name, text] = refusal
+        for words in list(self._prepared)[:-PREPARED]:  # whoever asked for these never fetched them
+            self._prepared.pop(words, None)
 
     def _read(self, op: str, name: str, text: str) -> Mission | None:
         """The mission, None if it was only to be checked. Raises: RefusedError."""
-        if (op, name, text) not in self._prepared:
+        prepared = self._prepared.pop((op, name, text), None)
+        if prepared is None:
             return self._named(name, text)
-        prepared = self._prepared.pop((op, name, text))
         if isinstance(prepared, RefusedError):
             raise prepared
-        return prepared
+        return prepared if op == "load" else None
 
     def single(self, node: str, ports: Mapping[str, str]) -> Mission:
         """A mission of this one node or library tree. Raises: RefusedError."""

@@ -10,7 +10,7 @@ from lxml import etree
 
 from pluto_bt import gateway
 from pluto_bt.blackboard import messages as m
-from pluto_bt.gateway.access import whole
+from pluto_bt.gateway.access import Access, whole
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.local import LocalClient, LocalGateway
 from pluto_bt.gateway.port import RunState
@@ -430,3 +430,33 @@ def test_a_fault_of_ours_ends_the_connection_that_met_it(story: Story, monkeypat
     client.close()
     pose_at(story, 1.0)
     assert brief(story.says(other, "<ping/>")) == ["pong"]
+
+
+def test_a_session_is_not_a_connection_whatever_it_is_called(story: Story) -> None:
+    driver, other = story.client(), story.client('<hello session="#1"/>')
+    story.says(driver, '<lease op="acquire" ttl_s="60"/>')
+    command = '<command target="drive" flags="0"><velocity>0.1 0</velocity></command>'
+    assert brief(story.says(other, command)) == ["error no-lease"]
+
+
+def test_a_session_belongs_to_its_person() -> None:
+    story = Story(token="secret")
+    access = story.gateway.hub.access = Access().with_token("anna", "a" * 16).with_token("bert", "b" * 16)
+    assert len(access.keys) == 2
+    anna, bert = (story.client(f'<hello session="s" token="{letter * 16}"/>') for letter in "ab")
+    story.says(anna, '<lease op="acquire" ttl_s="60"/>')
+    command = '<command id="1" target="drive" flags="0"><velocity>0.1 0</velocity></command>'
+    assert brief(story.says(bert, command)) == ["error no-lease"]
+    assert brief(story.says(anna, command)) == ["ok"]
+
+
+def test_a_lease_stays_while_its_session_has_a_connection(story: Story) -> None:
+    older, newer = story.client('<hello session="s"/>'), story.client('<hello session="s"/>')
+    story.says(older, '<lease op="acquire" ttl_s="60"/>')
+    assert story.says(newer, '<lease op="query"/>')[0].get("mine") == "true"
+    newer.close()
+    story.step()
+    assert brief(story.says(older, RUN)) == ["ack", "progress running"]
+    older.close()
+    story.step()
+    assert ("cancel", "r1", "cancelled") in story.robot.did

@@ -22,7 +22,7 @@ def shown(frame: Up) -> str:
 
 
 def ask(client: int, id: str, session: str = "", kind: type[Request] = Get) -> Ask:
-    return Ask(client, session, "", kind(topic="tree", id=id) if kind is Get else Lease(op="query", id=id))  # type: ignore[arg-type,call-arg]
+    return Ask(client, session, "", kind(topic="tree", id=id) if kind is Get else Lease(op="renew", id=id))  # type: ignore[arg-type,call-arg]
 
 
 def test_who_asks_for_much_waits_behind_himself() -> None:
@@ -44,11 +44,12 @@ def test_a_line_that_is_held_waits_until_it_is_free() -> None:
     for frame in (ask(1, "a"), ask(1, "b"), ask(2, "x")):
         turns.add((frame, 0))
     assert shown(turns.next()[0]) == "1a"
-    turns.hold("#1")
+    hold = turns.hold()
     turns.add((ask(1, "c"), 0))
     turns.add((Gone(1), 0))
     assert [shown(turns.next()[0]), turns.is_ready, len(turns)] == ["2x", False, 1], "his questions are forgotten with him"
-    assert turns.free("#1") and not turns.free("#1")
+    turns.free(hold)
+    turns.free(hold)
     assert [shown(turns.next()[0]), turns.is_ready] == ["gone 1", False]
 
 
@@ -57,3 +58,26 @@ def test_they_can_all_be_sent_home() -> None:
     turns.add((ask(1, "a"), 0))
     turns.clear()
     assert len(turns) == 0
+
+
+def test_who_names_a_session_in_the_middle_does_not_overtake_himself() -> None:
+    frames = ask(1, "a", kind=Lease), ask(1, "b", kind=Lease), ask(1, "c", "s", Lease), ask(2, "x", "s"), Gone(1), ask(2, "y", "s")
+    found = order(*frames)
+    assert [one for one in found if "1" in one] == ["1a", "1b", "1c", "gone 1"] and [one for one in found if "2" in one] == ["2x", "2y"]
+
+
+def test_a_hold_is_ended_by_its_own_work_alone() -> None:
+    turns = Turns()
+    turns.add((ask(1, "a", "s"), 0))
+    turns.next()
+    old = turns.hold()
+    turns.clear()
+    assert not turns.is_wanted(old, ask(1, "a", "s"))
+    turns.add((ask(9, "b", "s"), 0))
+    turns.next()
+    new = turns.hold()
+    turns.add((ask(9, "c", "s"), 0))
+    turns.free(old)
+    assert not turns.is_ready and turns.is_wanted(new, ask(9, "b", "s"))
+    turns.free(new)
+    assert shown(turns.next()[0]) == "9c"
