@@ -20,7 +20,8 @@ from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamp
 
 REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
 """So much is answered in one step, and for so long; a request that has begun is answered to its end."""
-QUEUE = 16 * 1024
+QUEUE, QUEUE_MISSIONS = 16 * 1024, 4
+"""So many requests may wait, and no more bytes than so many of the longest missions have: who hung up leaves nothing heavy behind."""
 HEARTBEAT_S = 0.25
 _EVENTS = "events"
 
@@ -38,6 +39,8 @@ class Exchange:
         self._answers = 0  # in this step
         self._desk = Desk(port, self._answer, self._audit)
         self._inbox: deque[tuple[Up, int]] = deque()  # the one thing that both threads touch
+        self._came_bytes = self._taken_bytes = 0  # in the inbox and out of it; each is written by one thread alone
+        self._most_bytes = QUEUE_MISSIONS * Limits().mission_bytes
         self._queue = Turns()
         self._aside = aside
         self._prepared: deque[tuple[int, Ask, int]] = deque()
@@ -48,10 +51,9 @@ class Exchange:
 
     def welcome(self, access: Access, limits: Limits, first_client: int, scenery: Scenery | None = None) -> Welcome:
         """The first frame for a gateway; what it is sent begins anew."""
-        self._queue.clear()
-        self._inbox.clear()
-        self._watched = ()
+        self._forget_all()
         self._sent_seq.clear()
+        self._most_bytes = QUEUE_MISSIONS * limits.mission_bytes
         seen = self._port.events_after(0)
         self._event_seq = seen[-1][0] if seen else 0
         port = self._port
@@ -63,10 +65,12 @@ class Exchange:
         if isinstance(frame, Ask):
             if self._desk.urgent(frame):
                 return
-            if len(self._inbox) > QUEUE:
-                text = "the executive does not answer; a stop is still obeyed"
+            waiting_bytes = self._came_bytes - self._taken_bytes + self._queue.size_bytes
+            if len(self._inbox) > QUEUE or waiting_bytes + frame.size_bytes > self._most_bytes:
+                text = "too much waits for the executive; a stop is still obeyed"
                 self._send(Answer(frame.client, "direct", Error(id=frame.request.id, code="busy", text=text)))
                 return
+            self._came_bytes += frame.size_bytes
         self._inbox.append((frame, self._desk.stops))
 
     def step(self, now_s: float, has_room: Callable[[], bool] = lambda: True) -> None:
@@ -75,7 +79,9 @@ class Exchange:
         if has_room():
             self._publish(now_s)
         while self._inbox and len(self._queue) < QUEUE:
-            self._queue.add(self._inbox.popleft())
+            item = self._inbox.popleft()
+            self._queue.add(item)
+            self._taken_bytes += item[0].size_bytes if isinstance(item[0], Ask) else 0
         self._answers, until_s = 0, self._port.now_s() + STEP_S
         self._answer_prepared(now_s)
         for _ in range(REQUESTS_A_STEP):
@@ -87,7 +93,7 @@ class Exchange:
 
     def _handle(self, frame: Up, stops: int, now_s: float) -> None:
         if isinstance(frame, Ask) and isinstance(frame.request, MissionOp) and frame.request.op in ("load", "check"):
-            self._aside(partial(self._prepare, self._queue.hold(), frame, frame.request, stops))
+            self._aside(partial(self._prepare, self._queue.hold(frame), frame, frame.request, stops))
             self._answer_prepared(now_s)
         elif isinstance(frame, Ask):
             self._desk.handle(frame, stops, now_s)
@@ -118,11 +124,16 @@ class Exchange:
 
     def gateway_lost(self) -> None:
         """The gateway died."""
-        self._queue.clear()
-        self._inbox.clear()
-        self._watched = ()
+        self._forget_all()
         self._desk.gateway_lost()
         self._audit.step()
+
+    def _forget_all(self) -> None:
+        """Nobody waits, nobody watches. Only while nothing is received."""
+        self._queue.clear()
+        self._inbox.clear()
+        self._came_bytes = self._taken_bytes = 0
+        self._watched = ()
 
     def _watch(self, topics: tuple[str, ...]) -> None:
         self._watched = topics

@@ -133,11 +133,11 @@ class Hub:
                 touched[flow.client] = None
 
     # for sessions ------------------------------------------------------------------------------------------------
-    def ask(self, session: Session, request: AnyRequest) -> None:
-        """Hand a request to the executive."""
+    def ask(self, session: Session, request: AnyRequest, size_bytes: int = 0) -> None:
+        """Hand a request to the executive; it came as a message of so many bytes."""
         self._asked.add(session.client)
         person = session.name if self.access.keys else ""
-        self._send(Ask(session.client, session.session, session.name, request, session.peer, person))
+        self._send(Ask(session.client, session.session, session.name, request, session.peer, person, size_bytes))
 
     def describe(self, request: Describe) -> Description:
         """What exists. Raises: RefusedError."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -54,14 +55,15 @@ class Session:
         self._answered_s = now_s  # when the executive last answered: what he told before is out of date
         self._is_reserve = is_reserve
         self._has_stopped = False
-        self._outstanding = 0
+        self._outstanding: deque[int] = deque()  # bytes of each request that waits for the executive
+        self._taken_bytes = 0  # of the message that is being taken
         self._began_s = now_s
         self._heard_s = now_s
 
     @property
     def is_waiting(self) -> bool:
         """True while an answer of the executive is outstanding."""
-        return self._outstanding > 0 or self._stops.is_under_way
+        return bool(self._outstanding) or self._stops.is_under_way
 
     @property
     def is_stranger(self) -> bool:
@@ -94,7 +96,7 @@ class Session:
     def _take(self, message: Message, now_s: float) -> None:
         if self.closing and message.tag not in STOPS:
             return
-        id = message.attrib.get("id", "")[:128]
+        id, self._taken_bytes = message.attrib.get("id", "")[:128], len(message.raw)
         try:
             request = parse(message)
             if self._may_speak(request):
@@ -177,10 +179,12 @@ class Session:
             self.fail("rate-limit", "a thousand stops wait for their answer; the robot is being stopped")
 
     def _ask(self, request: AnyRequest) -> None:
-        if self._outstanding >= self._limits.outstanding:
-            raise RefusedError("busy", f"{self._outstanding} requests of this client wait for the executive; wait for their replies")
-        self._outstanding += 1
-        self._hub.ask(self, request)
+        waiting, size_bytes = self._outstanding, self._taken_bytes
+        if len(waiting) >= self._limits.outstanding or (waiting and sum(waiting) + size_bytes > self._limits.mission_bytes):
+            text = f"{len(waiting)} requests ({sum(waiting)} bytes) of this client wait for the executive; wait for their replies"
+            raise RefusedError("busy", text)
+        waiting.append(size_bytes)
+        self._hub.ask(self, request, size_bytes)
 
     def _get(self, request: requests.Get, now_s: float) -> None:
         """Answered here if what is known here is no older than anything that this client has heard from the executive; else asked for."""
@@ -208,7 +212,7 @@ class Session:
             self._stop_answered(reply)
             return
         if answer.lane == "direct":
-            self._outstanding -= 1
+            self._outstanding.popleft()
         if isinstance(reply, Value):
             newest = Newest(ALIASES.get(reply.topic, reply.topic), reply.seq, reply.age_s, now_s, reply.payload)
             self._connection.send(newest.line(now_s, shown=reply.topic, id=reply.id))

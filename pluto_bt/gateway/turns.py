@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 
-from pluto_bt.gateway.wire import Ask, Gone, Key, Up, document_bytes
+from pluto_bt.gateway.wire import Ask, Gone, Key, Up
 
 Waiting = tuple[Up, int]
 """A frame, and the count of stops when it came."""
@@ -16,16 +16,16 @@ class Turns:
     """Lines of frames, one a client, or one for all connections of a session. Who asks for much waits behind himself alone.
 
     Attributes:
-        document_bytes: of all documents that wait.
+        size_bytes: of all requests that wait or are at work elsewhere.
     """
 
     def __init__(self) -> None:
         self._lines: dict[Key, deque[Waiting]] = {}  # in the order of their turns
         self._held: dict[Key, deque[Waiting]] = {}  # lines whose first request is at work elsewhere
-        self._holds: dict[int, Key] = {}
+        self._holds: dict[int, tuple[Key, int]] = {}  # the line, and the size of the request at work
         self._line_of: dict[int, Key] = {}  # where a client waits, until he is gone
         self._last, self._n_holds = _NOBODY, 0
-        self._count = self.document_bytes = 0
+        self._count = self.size_bytes = 0
 
     def __len__(self) -> int:
         return self._count
@@ -46,7 +46,7 @@ class Turns:
         line = self._held[name] if name in self._held else self._lines.setdefault(name, deque())
         line.append(item)
         self._count += 1
-        self.document_bytes += document_bytes(frame)
+        self.size_bytes += _size_bytes(frame)
 
     def _line_for(self, ask: Ask) -> Key:
         """The line of his session; but who still waits where he began must not overtake himself."""
@@ -59,7 +59,7 @@ class Turns:
         if line is not None:
             kept = lines[name] = deque(item for item in line if not _is_inquiry_of(client, item[0]))
             self._count -= len(line) - len(kept)  # it may be empty, but for the frame that is about to join it
-            self.document_bytes -= sum(document_bytes(item[0]) for item in line) - sum(document_bytes(item[0]) for item in kept)
+            self.size_bytes -= sum(_size_bytes(item[0]) for item in line) - sum(_size_bytes(item[0]) for item in kept)
 
     def next(self) -> Waiting:
         """The first of the client whose turn it is; he goes to the end. Only if `is_ready`."""
@@ -67,15 +67,16 @@ class Turns:
         line = self._lines.pop(name)
         item = line.popleft()
         self._count -= 1
-        self.document_bytes -= document_bytes(item[0])
+        self.size_bytes -= _size_bytes(item[0])
         if line:
             self._lines[name] = line
         return item
 
-    def hold(self) -> int:
-        """The rest of the line that had the last turn waits until it is free again; the number of this hold."""
+    def hold(self, ask: Ask) -> int:
+        """The rest of the line that had the last turn waits until this request of it is done; the number of this hold."""
         self._n_holds += 1
-        self._holds[self._n_holds] = self._last
+        self._holds[self._n_holds] = self._last, ask.size_bytes
+        self.size_bytes += ask.size_bytes
         self._held[self._last] = self._lines.pop(self._last, deque())
         return self._n_holds
 
@@ -85,17 +86,23 @@ class Turns:
 
     def free(self, hold: int) -> None:
         """The line has its turns again, unless the hold has ended before."""
-        name = self._holds.pop(hold, None)
-        line = self._held.pop(name, None) if name is not None else None
-        if name is not None and line:
-            self._lines[name] = line
+        if hold in self._holds:
+            name, size_bytes = self._holds.pop(hold)
+            self.size_bytes -= size_bytes
+            line = self._held.pop(name)
+            if line:
+                self._lines[name] = line
 
     def clear(self) -> None:
         """Nobody waits any more; all holds end."""
         for waiting in (self._lines, self._held, self._holds, self._line_of):
             waiting.clear()
-        self._count = self.document_bytes = 0
+        self._count = self.size_bytes = 0
 
 
 def _is_inquiry_of(client: int, frame: Up) -> bool:
     return isinstance(frame, Ask) and frame.client == client and frame.request.only_looks
+
+
+def _size_bytes(frame: Up) -> int:
+    return frame.size_bytes if isinstance(frame, Ask) else 0

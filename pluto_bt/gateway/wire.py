@@ -12,7 +12,7 @@ from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.replies import AnyReply, Item
-from pluto_bt.gateway.requests import AnyRequest, MissionOp
+from pluto_bt.gateway.requests import AnyRequest
 
 TYPES: dict[str, type[Message]] = {topic.name: topic.type for topic in TOPICS}
 FRAME_LIMIT = 64 * 1024 * 1024
@@ -29,6 +29,7 @@ Key: TypeAlias = int | tuple[str, str]
 
 class Ask(Frame, frozen=True):
     """Up: a client's request. `client` counts connections; `session` is "" without a named session; `name` and `peer` (his address) are for logs.
+    `size_bytes` is that of the message;
     `person` is his name where names are proved (by token or certificate), else "": a session of one is closed to the others.
     """
 
@@ -38,6 +39,7 @@ class Ask(Frame, frozen=True):
     request: AnyRequest
     peer: str = ""
     person: str = ""
+    size_bytes: int = 0
 
     @property
     def key(self) -> Key:
@@ -48,11 +50,6 @@ class Ask(Frame, frozen=True):
 def source_of(ask: Ask) -> str:
     """What logs call the client."""
     return ask.name or ask.session or f"client {ask.client}"
-
-
-def document_bytes(frame: Frame) -> int:
-    """About the size of the document that a frame brings; 0 without one."""
-    return len(frame.request.text) if isinstance(frame, Ask) and isinstance(frame.request, MissionOp) else 0
 
 
 class Gone(Frame, frozen=True):

@@ -460,3 +460,10 @@ def test_a_lease_stays_while_its_session_has_a_connection(story: Story) -> None:
     older.close()
     story.step()
     assert ("cancel", "r1", "cancelled") in story.robot.did
+
+
+def test_one_client_has_one_great_document_under_way(story: Story) -> None:
+    client = story.client()
+    document = f'<mission op="check"><root><!--{" " * 600_000}--></root></mission>'
+    assert brief(story.says(client, document * 2 + "<modules/>")) == ["error busy", "ok", "modules"]
+    assert brief(story.says(client, document)) == ["ok"]

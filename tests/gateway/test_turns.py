@@ -44,7 +44,7 @@ def test_a_line_that_is_held_waits_until_it_is_free() -> None:
     for frame in (ask(1, "a"), ask(1, "b"), ask(2, "x")):
         turns.add((frame, 0))
     assert shown(turns.next()[0]) == "1a"
-    hold = turns.hold()
+    hold = turns.hold(ask(1, "a"))
     turns.add((ask(1, "c"), 0))
     turns.add((Gone(1), 0))
     assert [shown(turns.next()[0]), turns.is_ready, len(turns)] == ["2x", False, 1], "his questions are forgotten with him"
@@ -70,12 +70,12 @@ def test_a_hold_is_ended_by_its_own_work_alone() -> None:
     turns = Turns()
     turns.add((ask(1, "a", "s"), 0))
     turns.next()
-    old = turns.hold()
+    old = turns.hold(ask(1, "a", "s"))
     turns.clear()
     assert not turns.is_wanted(old, ask(1, "a", "s"))
     turns.add((ask(9, "b", "s"), 0))
     turns.next()
-    new = turns.hold()
+    new = turns.hold(ask(9, "b", "s"))
     turns.add((ask(9, "c", "s"), 0))
     turns.free(old)
     assert not turns.is_ready and turns.is_wanted(new, ask(9, "b", "s"))
