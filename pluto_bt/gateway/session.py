@@ -144,7 +144,7 @@ class Session:
                 self._get(request, now_s)
             case requests.Unsubscribe():
                 old = dict(self.subscriptions.flows)
-                if not self.subscriptions.remove(request.topic, hub.topics):
+                if not self.subscriptions.remove(request.topic):
                     raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
                 self.say(Ok(id=request.id))
                 hub.joined(self, old, now_s)

@@ -6,8 +6,11 @@ from collections.abc import Iterable
 
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outlets import Outlet
+from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.requests import Subscribe
 
+WISHES = 64
+"""So many topics and patterns may one client subscribe to."""
 ALIASES = {"mission": "mission/state"}
 """Short names that the protocol promises."""
 
@@ -69,21 +72,31 @@ class Subscriptions:
         self.due: dict[Flow, None] = {}  # flows with a value that waits to be sent, in that order
 
     def add(self, wish: Subscribe, topics: Iterable[str]) -> None:
-        """From now on; the same topic or pattern again replaces the old wish."""
+        """From now on; the same topic or pattern again replaces the old wish. Raises: RefusedError `busy` if there are too many."""
+        if wish.topic not in self._wishes and len(self._wishes) >= WISHES:
+            raise RefusedError("busy", f"{WISHES} topics and patterns are subscribed to; unsubscribe one, or name several at once: topic/*")
         self._wishes[wish.topic] = wish
-        self._join(topics)
+        for topic in topics:
+            if matches(wish.topic, topic):
+                known = self.flows.get(topic)
+                if known is None or _rank(wish) >= _rank(known.wish):  # nothing else can have changed
+                    self._join(topic, wish)
 
-    def remove(self, topic: str, topics: Iterable[str]) -> bool:
+    def remove(self, pattern: str) -> bool:
         """No more; False if it was never asked for."""
-        if self._wishes.pop(topic, None) is None:
+        gone = self._wishes.pop(pattern, None)
+        if gone is None:
             return False
-        self._join(topics)
+        for topic in [topic for topic, flow in self.flows.items() if flow.wish is gone]:
+            fitting = [wish for wish in self._wishes.values() if matches(wish.topic, topic)]
+            self._join(topic, max(fitting, key=_rank, default=None))
         return True
 
     def end(self) -> None:
         """The client is gone."""
         self._wishes.clear()
-        self._join(())
+        self.flows.clear()
+        self.due.clear()
 
     def put(self, flow: Flow) -> None:
         """A value waits for the next `take`."""
@@ -104,21 +117,18 @@ class Subscriptions:
             room_bytes -= len(lines[-1])
         return b"".join(lines)
 
-    def _join(self, topics: Iterable[str]) -> None:
-        """A flow for every topic that is wished for; those whose wish stands go on as they were."""
-        flows: dict[str, Flow] = {}
-        for topic in topics:
-            wish, old = self._wish(topic), self.flows.get(topic)
-            if wish is not None:
-                flows[topic] = old if old is not None and old.wish is wish else Flow(self._client, topic, wish, self.outlet)
-        for topic, flow in self.flows.items():
-            if flows.get(topic) is not flow:
-                self.due.pop(flow, None)
-        self.flows = flows
+    def _join(self, topic: str, wish: Subscribe | None) -> None:
+        """A new flow of this topic in the place of the old one; None = nobody wants one."""
+        old = self.flows.pop(topic, None)
+        if old is not None:
+            self.due.pop(old, None)
+        if wish is not None:
+            self.flows[topic] = Flow(self._client, topic, wish, self.outlet)
 
-    def _wish(self, topic: str) -> Subscribe | None:
-        fitting = [wish for pattern, wish in self._wishes.items() if matches(pattern, topic)]
-        return max(fitting, key=lambda wish: (not wish.topic.endswith("*"), len(wish.topic)), default=None)
+
+def _rank(wish: Subscribe) -> tuple[bool, int]:
+    """The more exact, the greater."""
+    return not wish.topic.endswith("*"), len(wish.topic)
 
 
 def matches(pattern: str, topic: str) -> bool:

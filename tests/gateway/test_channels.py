@@ -17,8 +17,9 @@ from pluto_bt.gateway.channels import GRACE_S, Channels
 from pluto_bt.gateway.lanes import FLOWS
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outlets import Outlet, Outlets
+from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.requests import Subscribe
-from pluto_bt.gateway.subscriptions import Flow, Subscriptions
+from pluto_bt.gateway.subscriptions import WISHES, Flow, Subscriptions, matches
 
 TOPIC = "operator/word"
 
@@ -183,3 +184,40 @@ def test_who_has_gone_leaves_nothing_behind() -> None:
         street.channels.leave(TOPIC, flow)
     street.write(1.0)
     assert street.sent == [] and not street.channels._lanes[TOPIC]
+
+
+PLACES = ("a/x", "a/xy", "b/x", "mission/state")
+WISHED = st.sampled_from((*PLACES, "mission", "*", "a/*", "a/x*", "b/*", "m*"))
+
+
+@given(st.lists(st.tuples(st.booleans(), WISHED), max_size=12))
+def test_of_all_wishes_the_most_exact_one_counts(steps: list[tuple[bool, str]]) -> None:
+    """Each topic's flow is that of the most exact wish that stands, whatever came and went before; a wish that stands keeps its flow."""
+    subscriptions = Subscriptions(1)
+    wishes: dict[str, Subscribe] = {}
+    for is_new, pattern in steps:
+        before = dict(subscriptions.flows)
+        if is_new:
+            wishes[pattern] = Subscribe(topic=pattern)
+            subscriptions.add(wishes[pattern], PLACES)
+        else:
+            assert subscriptions.remove(pattern) == (wishes.pop(pattern, None) is not None)
+        for topic in PLACES:
+            best = max(
+                (wish for wish in wishes.values() if matches(wish.topic, topic)), key=lambda w: (not w.topic.endswith("*"), len(w.topic)), default=None
+            )
+            flow = subscriptions.flows.get(topic)
+            assert (flow.wish if flow else None) is best
+            if topic in before and before[topic].wish is best:
+                assert flow is before[topic]
+
+
+def test_a_client_may_have_so_many_wishes_and_no_more() -> None:
+    subscriptions = Subscriptions(1)
+    for number in range(WISHES):
+        subscriptions.add(Subscribe(topic=f"topic {number}"), ())
+    with pytest.raises(RefusedError, match="unsubscribe one"):
+        subscriptions.add(Subscribe(topic="one more"), ())
+    subscriptions.add(Subscribe(topic="topic 0", max_rate_hz=5.0), ())
+    assert subscriptions.remove("topic 1")
+    subscriptions.add(Subscribe(topic="one more"), ())
