@@ -94,11 +94,6 @@ def scope_of(request: AnyRequest) -> str:
     return "watch"
 
 
-def is_control(request: AnyRequest) -> bool:
-    """True for what the audit log keeps: all that may change something."""
-    return isinstance(request, requests.Stop | requests.Estop) or (scope_of(request) != "watch" and getattr(request, "op", "") != "renew")
-
-
 def read_access(tls: str | None, tokens: str | None, faults: Faults) -> Access:
     """The access that the options `--gateway-tls CERT,KEY[,AUTHORITY]` and `--gateway-tokens FILE` ask for."""
     keys = _keys(tokens, faults) if tokens is not None else ()

@@ -6,17 +6,19 @@ import contextlib
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from pluto_bt.gateway.replies import AnyReply, Error
-from pluto_bt.gateway.wire import Ask
+from pluto_bt.gateway.wire import Ask, Refused
 from pluto_bt.runtime.clock import calendar_ns
 from pluto_bt.runtime.state_folder import state_path
 
-LIMIT_BYTES = 16 * 1024 * 1024
-LINE_BYTES = 4096
+LIMIT_BYTES, OLD_FILES = 16 * 1024 * 1024, 4
+CONTENT_BYTES, NAME_CHARACTERS = 512, 128
 WAITING = 16 * 1024
+RETRY_S, LONGEST_RETRY_S = 1.0, 60.0
 
 
 def default_path() -> Path:
@@ -25,44 +27,84 @@ def default_path() -> Path:
 
 
 class Audit:
-    """`note` never waits, and may be called in any thread; `step` writes. At 16 MiB the file becomes FILE.1, and a new one is begun.
+    """`note` never waits, and may be called in any thread; `step` writes. At 16 MiB the file becomes FILE.1, that FILE.2 and so on to FILE.4.
+
+    What cannot be written is tried again, later each time. What cannot be kept so long is counted, and the count is written.
 
     Args:
         path: None = nothing is kept.
-        trouble: told once if the file cannot be written.
+        trouble: told once each time that the file cannot be written any more.
     """
 
     def __init__(self, path: Path | None, trouble: Callable[[str], None] = lambda text: None) -> None:
         self._path, self._trouble = path, trouble
-        self._waiting: deque[bytes] = deque(maxlen=WAITING)
+        self._waiting: deque[bytes] = deque()
+        self._lost: deque[None] = deque()  # one each, for it is safe in all threads
         self._encoder = msgspec.json.Encoder()
+        self._retry_s, self._next_s = 0.0, float("-inf")
 
     def note(self, ask: Ask, reply: AnyReply, run_s: float) -> None:
         """A request and its answer."""
+        outcome = reply.code if isinstance(reply, Error) else "ok"
+        content = msgspec.to_builtins(ask.request)
+        self._keep(run_s, ask, content.pop("_"), content, outcome)
+
+    def note_refused(self, refused: Refused, run_s: float) -> None:
+        """A request that the gateway itself refused."""
+        self._keep(run_s, refused, refused.what, {"text": refused.text}, refused.code)
+
+    def _keep(self, run_s: float, sender: Ask | Refused, what: str, content: dict[str, Any], outcome: str) -> None:
         if self._path is None:
             return
-        outcome = reply.code if isinstance(reply, Error) else "ok"
-        request = msgspec.to_builtins(ask.request)
-        what = request.pop("_")
-        entry = {"at_ns": calendar_ns(), "run_s": round(run_s, 3), "client": ask.client, "name": ask.name, "session": ask.session, "peer": ask.peer,
-                 "request": what, "content": request, "outcome": outcome}  # fmt: skip
-        line = self._encoder.encode(entry)
-        if len(line) > LINE_BYTES:  # a mission, say
-            line = self._encoder.encode(entry | {"content": {"bytes": len(line)}})
-        self._waiting.append(line + b"\n")
-
-    def step(self) -> None:
-        """Write what waits."""
-        if not self._waiting or self._path is None:
+        if len(self._waiting) >= WAITING:
+            self._lost.append(None)
             return
-        lines = b"".join(self._waiting.popleft() for _ in range(len(self._waiting)))
+        size_bytes = len(self._encoder.encode(content))
+        if size_bytes > CONTENT_BYTES:  # a mission, say
+            content = {"bytes": size_bytes}
+        who = {"client": sender.client, "name": sender.name[:NAME_CHARACTERS], "session": sender.session, "peer": sender.peer}
+        self._waiting.append(self._line(run_s, who | {"request": what, "content": content, "outcome": outcome}))
+
+    def _line(self, run_s: float, entry: dict[str, Any]) -> bytes:
+        return self._encoder.encode({"at_ns": calendar_ns(), "run_s": round(run_s, 3)} | entry) + b"\n"
+
+    def step(self, now_s: float) -> None:
+        """Write what waits."""
+        if self._path is None or not self._waiting or now_s < self._next_s:
+            return
+        n_lost, lines = len(self._lost), list(self._waiting)
+        told = self._line(now_s, {"request": "", "outcome": "lost", "lines": n_lost}) if n_lost else b""
         try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            with contextlib.suppress(FileNotFoundError):
-                if self._path.stat().st_size > LIMIT_BYTES:
-                    self._path.replace(self._path.with_name(self._path.name + ".1"))
-            with self._path.open("ab") as file:
-                file.write(lines)
+            self._append(self._path, b"".join(lines) + told)
         except OSError as error:
-            self._trouble(f"the audit log {self._path} cannot be written: {error.strerror or error}")
-            self._path = None
+            if not self._retry_s:
+                self._trouble(f"the audit log {self._path} cannot be written; it is tried again: {error.strerror or error}")
+            self._retry_s = min(LONGEST_RETRY_S, max(RETRY_S, 2.0 * self._retry_s))
+            self._next_s = now_s + self._retry_s
+            return
+        self._retry_s = 0.0
+        for done, count in ((self._waiting, len(lines)), (self._lost, n_lost)):
+            for _ in range(count):
+                done.popleft()
+
+    @staticmethod
+    def _append(path: Path, lines: bytes) -> None:
+        """All of it or nothing. Raises: OSError."""
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with contextlib.suppress(FileNotFoundError):
+            if path.stat().st_size > LIMIT_BYTES:
+                for number in range(OLD_FILES, 0, -1):
+                    with contextlib.suppress(FileNotFoundError):
+                        _old(path, number - 1).replace(_old(path, number))
+        with path.open("ab", buffering=0) as file:
+            begin = file.tell()
+            try:
+                if file.write(lines) != len(lines):
+                    raise OSError("the disk is full")
+            except OSError:
+                file.truncate(begin)
+                raise
+
+
+def _old(path: Path, number: int) -> Path:
+    return path.with_name(f"{path.name}.{number}") if number else path

@@ -9,7 +9,6 @@ from collections import deque
 from collections.abc import Callable, Sequence
 
 from pluto_bt.gateway import inquiries, replies, requests
-from pluto_bt.gateway.access import is_control
 from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.callers import Callers
 from pluto_bt.gateway.leases import Held, Leases
@@ -76,7 +75,7 @@ class Desk:
         except Exception as error:  # a fault of the robot's side must not take the link down
             reply, later = Error(code="internal", text=f"{type(error).__name__}: {error}"), []
         self._send(Answer(ask.client, "direct", with_id(reply, ask.request.id)))
-        if is_control(ask.request):
+        if ask.request.acts:
             self._audit.note(ask, reply, now_s)
         for follow in later:
             self._tell(key, follow)

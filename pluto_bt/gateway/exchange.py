@@ -16,7 +16,7 @@ from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.replies import Error
 from pluto_bt.gateway.requests import MissionOp
 from pluto_bt.gateway.turns import Turns
-from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Scenery, Stamped, Up, Watch, Welcome, pack_value
+from pluto_bt.gateway.wire import Answer, Ask, Batch, Down, Gone, Refused, Scenery, Stamped, Up, Watch, Welcome, pack_value
 
 REQUESTS_A_STEP, ANSWERS_A_STEP, STEP_S = 64, 256, 0.005
 """So much is answered in one step, and for so long; a request that has begun is answered to its end."""
@@ -62,13 +62,19 @@ class Exchange:
 
     def receive(self, frame: Up) -> None:
         """A frame of the gateway, in whatever thread it arrives."""
+        if isinstance(frame, Refused):
+            self._audit.note_refused(frame, self._port.now_s())
+            return
         if isinstance(frame, Ask):
             if self._desk.urgent(frame):
                 return
             waiting_bytes = self._came_bytes - self._taken_bytes + self._queue.size_bytes
             if len(self._inbox) > QUEUE or waiting_bytes + frame.size_bytes > self._most_bytes:
                 text = "too much waits for the executive; a stop is still obeyed"
-                self._send(Answer(frame.client, "direct", Error(id=frame.request.id, code="busy", text=text)))
+                reply = Error(id=frame.request.id, code="busy", text=text)
+                self._send(Answer(frame.client, "direct", reply))
+                if frame.request.acts:
+                    self._audit.note(frame, reply, self._port.now_s())
                 return
             self._came_bytes += frame.size_bytes
         self._inbox.append((frame, self._desk.stops))
@@ -89,7 +95,7 @@ class Exchange:
                 break  # answers that nobody takes must not pile up here, nor the rest of the step wait
             self._handle(*self._queue.next(), now_s)
         self._desk.step(now_s)
-        self._audit.step()
+        self._audit.step(now_s)
 
     def _handle(self, frame: Up, stops: int, now_s: float) -> None:
         if isinstance(frame, Ask) and isinstance(frame.request, MissionOp) and frame.request.op in ("load", "check"):
@@ -126,7 +132,7 @@ class Exchange:
         """The gateway died."""
         self._forget_all()
         self._desk.gateway_lost()
-        self._audit.step()
+        self._audit.step(self._port.now_s())
 
     def _forget_all(self) -> None:
         """Nobody waits, nobody watches. Only while nothing is received."""

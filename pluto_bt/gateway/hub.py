@@ -14,7 +14,7 @@ from pluto_bt.gateway.replies import Description
 from pluto_bt.gateway.requests import AnyRequest, Describe
 from pluto_bt.gateway.session import Session
 from pluto_bt.gateway.subscriptions import ALIASES, Flow, matches
-from pluto_bt.gateway.wire import Answer, Ask, Batch, Gone, Up, Watch, Welcome
+from pluto_bt.gateway.wire import Answer, Ask, Batch, Gone, Refused, Up, Watch, Welcome
 from pluto_bt.source import did_you_mean
 
 INTEREST_S = 5.0
@@ -138,6 +138,10 @@ class Hub:
         self._asked.add(session.client)
         person = session.name if self.access.keys else ""
         self._send(Ask(session.client, session.session, session.name, request, session.peer, person, size_bytes))
+
+    def refused(self, session: Session, what: str, code: str, text: str) -> None:
+        """Tell the audit log what a client may not do."""
+        self._send(Refused(session.client, session.session, session.name, session.peer, what, code, text))
 
     def describe(self, request: Describe) -> Description:
         """What exists. Raises: RefusedError."""

@@ -26,6 +26,11 @@ class Request(msgspec.Struct, frozen=True, kw_only=True, tag=True, tag_field="_"
         """True for what changes nothing on the robot: whoever may watch may ask it, and it may be asked again, or be forgotten with its client."""
         return looks(_TAGS[type(self)], getattr(self, "op", ""))
 
+    @property
+    def acts(self) -> bool:
+        """True for what may change something: the audit log keeps it."""
+        return acts(_TAGS[type(self)], getattr(self, "op", ""))
+
 
 class SayHello(Request, frozen=True, kw_only=True):
     """Who the client is; `session` is the name under which `command` and `run` act once."""
@@ -202,6 +207,14 @@ ELEMENTS: dict[str, type[Any]] = {
 _TAGS = {kind: tag for tag, kind in ELEMENTS.items()}
 _LOOKS = frozenset({"ping", "describe", "get", "subscribe", "tree", "why", "modules", "log"})
 _LOOKING_OPS = {"lease": ("query",), "mission": ("list", "state", "fetch", "check"), "params": ("get",)}
+
+
+_MANNERS = frozenset({"hello", "unsubscribe", "bye"})
+
+
+def acts(tag: str, op: str) -> bool:
+    """True if the element may change something on the robot, so that it belongs into the audit log; a lease that is renewed changes nothing."""
+    return tag in ELEMENTS and tag not in _MANNERS and not looks(tag, op) and op != "renew"
 
 
 def looks(tag: str, op: str) -> bool:

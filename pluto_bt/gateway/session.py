@@ -15,7 +15,7 @@ from pluto_bt.gateway.parse import parse
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
 from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, with_id
-from pluto_bt.gateway.requests import AnyRequest, Estop, Stop
+from pluto_bt.gateway.requests import AnyRequest, Estop, Stop, acts
 from pluto_bt.gateway.stops import Stops
 from pluto_bt.gateway.subscriptions import ALIASES, Subscriptions
 from pluto_bt.gateway.wire import Answer
@@ -101,11 +101,18 @@ class Session:
             request = parse(message)
             if self._may_speak(request):
                 self._do(request, now_s)
+            else:
+                self._note_refused(message, "too-many-connections" if self._is_known else "unauthorised", "its sender has not said who he is")
         except RefusedError as refusal:
+            self._note_refused(message, refusal.code, refusal.text)
             self.say(Error(id=id, code=refusal.code, text=refusal.text, line=message.line, column=message.column))
         except Exception as error:  # a fault of ours ends this connection, not those of all the others
             self.say(Error(id=id, code="internal", text=f"<{message.tag}>: {type(error).__name__}: {error}"))
             self._connection.close()
+
+    def _note_refused(self, message: Message, code: str, text: str) -> None:
+        if acts(message.tag, message.attrib.get("op", "")):
+            self._hub.refused(self, message.tag, code, text)
 
     def _may_speak(self, request: AnyRequest) -> bool:
         """A stop always; else what the place and the token demand."""
@@ -163,6 +170,7 @@ class Session:
             key = self._hub.access.by_token(request.token)
             if key is None:
                 self.fail("unauthorised", "the token is none of those in the gateway's file of people", request.id)
+                self._hub.refused(self, "hello", "unauthorised", f"a token that is nobody's, from somebody who calls himself {request.name!r}")
                 return
             self.known_as(key)
         self._greeted = True

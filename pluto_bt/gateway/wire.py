@@ -58,6 +58,18 @@ class Gone(Frame, frozen=True):
     client: int
 
 
+class Refused(Frame, frozen=True):
+    """Up, for the audit log alone: what a client may not do, refused before it came to the executive; `what` is its element."""
+
+    client: int
+    session: str
+    name: str
+    peer: str
+    what: str
+    code: str
+    text: str
+
+
 class Watch(Frame, frozen=True):
     """Up: the topics that anybody subscribed to, all of them."""
 
@@ -113,7 +125,7 @@ class Farewell(Frame, frozen=True):
     """Down, last: tell the clients and end."""
 
 
-Up: TypeAlias = Ask | Gone | Watch
+Up: TypeAlias = Ask | Gone | Watch | Refused
 Down: TypeAlias = Welcome | Batch | Answer | Farewell
 
 

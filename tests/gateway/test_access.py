@@ -20,6 +20,7 @@ from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.local import LocalGateway
+from pluto_bt.gateway.wire import Refused
 from pluto_bt.source import Faults
 
 from .conftest import Running
@@ -122,6 +123,52 @@ def test_an_audit_log_that_cannot_be_written_is_told_and_stops_nobody(tmp_path: 
     client = gateway.connect()
     assert [code(line) for line in said(client, "<stop/>", gateway) + said(client, "<stop/>", gateway)] == ["ok", "ok"]
     assert len(told) == 1 and "cannot be written" in told[0]
+
+
+def test_the_audit_log_keeps_what_was_refused_at_the_door(tmp_path: Path) -> None:
+    audit = tmp_path / "audit.jsonl"
+    gateway = LocalGateway(FakeRobot(), Limits(outstanding=1), access_of(None, str(people_file(tmp_path))), Audit(audit))
+    said(gateway.connect(), '<hello name="eve" token="a guess that is wrong"/>', gateway)
+    said(gateway.connect(), '<command target="drive" flags="0"/>', gateway)
+    anna = gateway.connect()
+    said(anna, '<hello token="0123456789abcdef-anna"/><module name="slam" op="stop"/><get topic="nothing"/>', gateway)
+    said(anna, '<command target="drive" flags="0"><velocity>nan 0</velocity></command><lease op="acquire"/><lease op="release"/>', gateway)
+    lines = [json.loads(line) for line in audit.read_text(encoding="utf-8").splitlines()]
+    assert [(line["name"], line["request"], line["outcome"]) for line in lines] == [
+        ("", "hello", "unauthorised"), ("", "command", "unauthorised"), ("anna", "module", "read-only"), ("anna", "command", "bad-value"),
+        ("anna", "lease", "busy"), ("anna", "Lease", "ok"),
+    ]  # fmt: skip
+    assert "eve" in lines[0]["content"]["text"] and "a guess" not in audit.read_text(encoding="utf-8")
+
+
+def test_an_audit_log_goes_on_when_it_can_and_tells_what_it_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pluto_bt.gateway.audit.WAITING", 3)
+    told: list[str] = []
+    folder = tmp_path / "folder"
+    folder.write_text("in the way", encoding="utf-8")
+    audit = Audit(folder / "audit.jsonl", told.append)
+    for number in range(5):
+        audit.note_refused(Refused(number, "", "eve", "", "run", "read-only", "no"), 0.0)
+    audit.step(0.0)
+    folder.unlink()
+    audit.step(0.5)
+    assert not folder.exists(), "not at each step"
+    audit.step(1.0)
+    lines = [json.loads(line) for line in (folder / "audit.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert ([line.get("client") for line in lines], lines[3]["lines"], len(told)) == ([0, 1, 2, None], 2, 1)
+    audit.step(2.0)
+    assert len((folder / "audit.jsonl").read_text(encoding="utf-8").splitlines()) == 4
+
+
+def test_old_audit_logs_move_on_and_long_contents_are_counted_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pluto_bt.gateway.audit.LIMIT_BYTES", 100)
+    audit = Audit(tmp_path / "audit.jsonl")
+    for number in range(7):
+        audit.note_refused(Refused(number, "", "", "", "run", "busy", "x" * 1000), 0.0)
+        audit.step(0.0)
+    kept = {path.name: json.loads(path.read_text(encoding="utf-8")) for path in tmp_path.iterdir()}
+    assert {name: line["client"] for name, line in kept.items()} == {"audit.jsonl": 6} | {f"audit.jsonl.{n}": 6 - n for n in (1, 2, 3, 4)}
+    assert kept["audit.jsonl"]["content"] == {"bytes": 1011}
 
 
 # real TLS ------------------------------------------------------------------------------------------------------------

@@ -203,9 +203,8 @@ def test_of_all_wishes_the_most_exact_one_counts(steps: list[tuple[bool, str]]) 
         else:
             assert subscriptions.remove(pattern) == (wishes.pop(pattern, None) is not None)
         for topic in PLACES:
-            best = max(
-                (wish for wish in wishes.values() if matches(wish.topic, topic)), key=lambda w: (not w.topic.endswith("*"), len(w.topic)), default=None
-            )
+            fitting = [wish for wish in wishes.values() if matches(wish.topic, topic)]
+            best = max(fitting, key=lambda wish: (not wish.topic.endswith("*"), len(wish.topic)), default=None)
             flow = subscriptions.flows.get(topic)
             assert (flow.wish if flow else None) is best
             if topic in before and before[topic].wish is best:
