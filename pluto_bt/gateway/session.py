@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from pluto_bt.gateway.access import SCOPES, Key, may, scope_of, shown_scopes
 from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.framing import Message
 from pluto_bt.gateway.newest import Newest
+from pluto_bt.gateway.outstanding import Outstanding
 from pluto_bt.gateway.parse import parse
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
@@ -52,10 +52,10 @@ class Session:
         self._scopes: tuple[str, ...] = () if hub.access.keys else SCOPES
         self._is_known = not hub.access.keys  # by a token, or by a certificate
         self._greeted = False
-        self._answered_s = now_s  # when the executive last answered: what he told before is out of date
+        self._answered_at = hub.batches  # how much the executive had told when it last answered: that is out of date
         self._is_reserve = is_reserve
         self._has_stopped = False
-        self._outstanding: deque[int] = deque()  # bytes of each request that waits for the executive
+        self._outstanding = Outstanding(hub.limits)
         self._taken_bytes = 0  # of the message that is being taken
         self._began_s = now_s
         self._heard_s = now_s
@@ -141,24 +141,24 @@ class Session:
                 self.say(Pong(id=request.id, t=request.t, time_s=hub.run_s(now_s)))
             case requests.Describe():
                 self.say(hub.describe(request))
-            case requests.Subscribe():
-                hub.require_topic(request.topic)
-                old = dict(self.subscriptions.flows)
-                self.subscriptions.add(request, hub.topics)
-                self.say(Ok(id=request.id))
-                hub.joined(self, old, now_s)
+            case requests.Subscribe() | requests.Unsubscribe():
+                self._wish(request, now_s)
             case requests.Get():
                 self._get(request, now_s)
-            case requests.Unsubscribe():
-                old = dict(self.subscriptions.flows)
-                if not self.subscriptions.remove(request.topic):
-                    raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
-                self.say(Ok(id=request.id))
-                hub.joined(self, old, now_s)
             case requests.Bye():
                 self._connection.close()
             case _:
                 self._ask(request)
+
+    def _wish(self, request: requests.Subscribe | requests.Unsubscribe, now_s: float) -> None:
+        old = dict(self.subscriptions.flows)
+        if isinstance(request, requests.Subscribe):
+            self._hub.require_topic(request.topic)
+            self.subscriptions.add(request, self._hub.topics)
+        elif not self.subscriptions.remove(request.topic):
+            raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
+        self.say(Ok(id=request.id))
+        self._hub.joined(self, old, now_s)
 
     def _hello(self, request: requests.SayHello, now_s: float) -> None:
         if self._greeted:
@@ -187,16 +187,12 @@ class Session:
             self.fail("rate-limit", "a thousand stops wait for their answer; the robot is being stopped")
 
     def _ask(self, request: AnyRequest) -> None:
-        waiting, size_bytes = self._outstanding, self._taken_bytes
-        if len(waiting) >= self._limits.outstanding or (waiting and sum(waiting) + size_bytes > self._limits.mission_bytes):
-            text = f"{len(waiting)} requests ({sum(waiting)} bytes) of this client wait for the executive; wait for their replies"
-            raise RefusedError("busy", text)
-        waiting.append(size_bytes)
-        self._hub.ask(self, request, size_bytes)
+        self._outstanding.add(self._taken_bytes)
+        self._hub.ask(self, request, self._taken_bytes)
 
     def _get(self, request: requests.Get, now_s: float) -> None:
         """Answered here if what is known here is no older than anything that this client has heard from the executive; else asked for."""
-        is_fresh = not self._outstanding and self._hub.batch_s > self._answered_s
+        is_fresh = not self._outstanding and self._hub.batches > self._answered_at
         newest = self._hub.get(request.topic, now_s)
         if newest is None or not is_fresh:
             self._ask(request)
@@ -215,12 +211,12 @@ class Session:
     def answer(self, answer: Answer, now_s: float) -> None:
         """The executive's word to one of our requests."""
         reply = answer.reply
-        self._answered_s = now_s
+        self._answered_at = self._hub.batches
         if answer.lane == "stop":
             self._stop_answered(reply)
             return
         if answer.lane == "direct":
-            self._outstanding.popleft()
+            self._outstanding.answered()
         if isinstance(reply, Value):
             newest = Newest(ALIASES.get(reply.topic, reply.topic), reply.seq, reply.age_s, now_s, reply.payload)
             self._connection.send(newest.line(now_s, shown=reply.topic, id=reply.id))
