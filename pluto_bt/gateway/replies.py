@@ -17,6 +17,8 @@ FATAL_CODES = ("not-well-formed", "restricted-xml", "bad-encoding", "too-large",
                "too-many-connections", "unsupported-version", "unauthorised", "shutdown")
 CODES = ("invalid", "unknown-element", "unknown-topic", "unknown-node", "unknown-param", "unknown-module", "no-value", "bad-value", "out-of-range",
          "read-only", "no-lease", "lease-held", "wrong-state", "conflict", "estopped", "bad-mission", "busy", "internal")
+CAPABILITIES = ("get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "why", "modules", "params", "set", "describe",
+                "log")
 # fmt: on
 RUN_FINAL = ("succeeded", "failed", "cancelled", "preempted", "timeout")
 

@@ -14,7 +14,7 @@ from pluto_bt.gateway.outstanding import Outstanding
 from pluto_bt.gateway.parse import parse
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
-from pluto_bt.gateway.replies import AnyReply, Error, Hello, Ok, Pong, Value, with_id
+from pluto_bt.gateway.replies import CAPABILITIES, AnyReply, Error, Hello, Ok, Pong, Value, with_id
 from pluto_bt.gateway.requests import AnyRequest, Estop, Stop, acts
 from pluto_bt.gateway.stops import Stops
 from pluto_bt.gateway.subscriptions import ALIASES, Subscriptions
@@ -24,9 +24,6 @@ if TYPE_CHECKING:
     from pluto_bt.gateway.hub import Hub
 
 OPERATORS = frozenset({"operator", "shell", "console"})
-CAPABILITIES = (
-    "get", "subscribe", "lease", "command", "run", "stop", "estop", "mission", "tree", "why", "modules", "params", "set", "describe", "log",
-)  # fmt: skip
 
 
 class Session:
@@ -213,7 +210,11 @@ class Session:
         reply = answer.reply
         self._answered_at = self._hub.batches
         if answer.lane == "stop":
-            self._stop_answered(reply)
+            ids, following = self._stops.answered()
+            for id in ids:
+                self.say(with_id(reply, id))
+            if following is not None:
+                self._hub.ask(self, following)
             return
         if answer.lane == "direct":
             self._outstanding.answered()
@@ -222,13 +223,6 @@ class Session:
             self._connection.send(newest.line(now_s, shown=reply.topic, id=reply.id))
         else:
             self.say(reply)
-
-    def _stop_answered(self, reply: AnyReply) -> None:
-        ids, following = self._stops.answered()
-        for id in ids:
-            self.say(with_id(reply, id))
-        if following is not None:
-            self._hub.ask(self, following)
 
     def events(self, events: list[Newest], now_s: float) -> bool:
         """Events are lines like values, but none is dropped. True if this client wants them."""
