@@ -82,6 +82,7 @@ class Outcomes:
         """An outcome for a request that is about to act; stored if session and id are named."""
         outcome = Outcome(request)
         if not isinstance(key, int) and request.id:
+            self.forget(key, request)
             of_session = self._sessions.pop(key, {})
             self._sessions[key] = of_session  # now the most recently used
             of_session[request.id] = outcome
