@@ -20,7 +20,8 @@ from pluto_bt.gateway.ssh_stream import Stream
 
 if TYPE_CHECKING:
     from prompt_toolkit.application.current import AppSession
-    from prompt_toolkit.input import PipeInput
+
+    from pluto_bt.gateway.ssh_keyboard import Keyboard
 
 INTERRUPT, END_OF_INPUT = "\x03", "\x04"
 LINE_CHARACTERS = 1 << 16
@@ -42,7 +43,7 @@ class Visit(asyncssh.SSHServerSession[str]):
         self._work: asyncio.Task[int] | None = None
         self._ending: asyncio.Task[None] | None = None
         self._stopping: asyncio.Task[int] | None = None
-        self._input: PipeInput | None = None
+        self._keyboard: Keyboard | None = None
         self._app_session: AppSession | None = None
 
     # asyncssh's calls --------------------------------------------------------------------------------------------
@@ -73,8 +74,10 @@ class Visit(asyncssh.SSHServerSession[str]):
 
     def data_received(self, data: str, datatype: int | None) -> None:
         """Keys, or the lines of a script."""
-        if self._input is not None:
-            self._input.send_text(data)
+        if self._keyboard is not None:
+            if not self._keyboard.type(data):
+                self._face.complain("more keys came than a person types; a script comes through a pipe, without a terminal")
+                self._cancel()
         elif self._has_terminal:
             if INTERRUPT in data:
                 self._interrupt()
@@ -90,8 +93,8 @@ class Visit(asyncssh.SSHServerSession[str]):
 
     def eof_received(self) -> bool:
         """The script is whole, or the terminal is closed."""
-        if self._input is not None:
-            self._input.send_text(END_OF_INPUT)
+        if self._keyboard is not None:
+            self._keyboard.type(END_OF_INPUT)
         else:
             self._lines.put_nowait(self._line)
             if self._line:
@@ -144,24 +147,24 @@ class Visit(asyncssh.SSHServerSession[str]):
         """The conversation, on the client's terminal."""
         from prompt_toolkit.application.current import create_app_session
         from prompt_toolkit.data_structures import Size
-        from prompt_toolkit.input import create_pipe_input
         from prompt_toolkit.output.vt100 import Vt100_Output
 
         from pluto_bt.gateway.shell.console import Console, history_of
+        from pluto_bt.gateway.ssh_keyboard import Keyboard
 
         def size() -> Size:
             width, height, *_ = self._channel.get_terminal_size()
             return Size(rows=height or ROWS, columns=width or COLUMNS)
 
-        with create_pipe_input() as keys:
-            output = Vt100_Output(out, size, term=self._channel.get_terminal_type())
-            with create_app_session(input=keys, output=output) as self._app_session:
-                console = Console(self._robot, history_of("ssh_history"), may_read_files=False, has_signals=False)
-                self._input = keys
-                try:
-                    return await console.talk()
-                finally:
-                    self._input = None
+        keyboard = Keyboard()
+        output = Vt100_Output(out, size, term=self._channel.get_terminal_type())
+        with create_app_session(input=keyboard, output=output) as self._app_session:
+            console = Console(self._robot, history_of("ssh_history"), may_read_files=False, has_signals=False)
+            self._keyboard = keyboard
+            try:
+                return await console.talk()
+            finally:
+                self._keyboard = None
 
     async def _end(self, work: asyncio.Task[int]) -> None:
         """The exit code to the client, and nothing left behind."""

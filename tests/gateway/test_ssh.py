@@ -263,6 +263,24 @@ def test_twenty_come_at_once(door: Door) -> None:
     assert all("nobody drives" in (client.stdout.read() if client.stdout else "") for client in clients)
 
 
+def test_a_large_paste_holds_up_nobody(door: Door) -> None:
+    with subprocess.Popen(door.words("-tt", HOST), stdin=subprocess.PIPE, stdout=subprocess.PIPE) as paster:
+        assert paster.stdin is not None and paster.stdout is not None
+        out = paster.stdout.fileno()
+        shown: list[bytes] = []
+        threading.Thread(target=shown.extend, args=(iter(lambda: os.read(out, 65536), b""),), daemon=True).start()  # he reads: it is the keys that are too many
+        try:
+            until(lambda: b"pluto>" in b"".join(shown))
+            paster.stdin.write(b"x" * 208_000)
+            paster.stdin.flush()
+            assert door.say(HOST, "stop").returncode == 0 and stops(door) == 1
+            paster.stdin.write(b"\x03")
+            paster.stdin.flush()
+            until(lambda: stops(door) == 2)
+        finally:
+            paster.kill()
+
+
 class Terminal:
     """The client in a tmux window."""
 
