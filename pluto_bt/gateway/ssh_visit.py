@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
@@ -16,6 +16,7 @@ from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split
 from pluto_bt.gateway.shell.robot import NAME, Robot
 from pluto_bt.gateway.shell.script import play
+from pluto_bt.gateway.ssh_script import Script, TooMuchError
 from pluto_bt.gateway.ssh_stream import Stream
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from pluto_bt.gateway.ssh_keyboard import Keyboard
 
 INTERRUPT, END_OF_INPUT = "\x03", "\x04"
-LINE_CHARACTERS = 1 << 16
 ROWS, COLUMNS = 24, 80
 
 
@@ -38,8 +38,7 @@ class Visit(asyncssh.SSHServerSession[str]):
         self._has_terminal = False
         self._command: str | None = None
         self._face: PlainFace
-        self._lines: asyncio.Queue[str] = asyncio.Queue()
-        self._line = ""
+        self._script = Script()
         self._work: asyncio.Task[int] | None = None
         self._ending: asyncio.Task[None] | None = None
         self._stopping: asyncio.Task[int] | None = None
@@ -84,11 +83,10 @@ class Visit(asyncssh.SSHServerSession[str]):
             elif END_OF_INPUT in data:
                 self._cancel()
         elif self._command is None:
-            *lines, self._line = (self._line + data).split("\n")
-            for line in lines:
-                self._lines.put_nowait(line + "\n")
-            if len(self._line) > LINE_CHARACTERS:
-                self._face.complain(f"expected lines of at most {LINE_CHARACTERS} characters")
+            try:
+                self._script.add(data)
+            except TooMuchError as error:
+                self._face.complain(str(error))
                 self._cancel()
 
     def eof_received(self) -> bool:
@@ -96,9 +94,7 @@ class Visit(asyncssh.SSHServerSession[str]):
         if self._keyboard is not None:
             self._keyboard.type(END_OF_INPUT)
         else:
-            self._lines.put_nowait(self._line)
-            if self._line:
-                self._lines.put_nowait("")
+            self._script.end()
         return True
 
     def break_received(self, msec: int) -> bool:
@@ -137,11 +133,7 @@ class Visit(asyncssh.SSHServerSession[str]):
             return await obey(self._robot, self._face, words)
         if self._has_terminal:
             return await self._talk(out)
-        return await play(self._robot, self._face, self._typed())
-
-    async def _typed(self) -> AsyncIterator[str]:
-        while line := await self._lines.get():
-            yield line
+        return await play(self._robot, self._face, self._script.lines())
 
     async def _talk(self, out: TextIO) -> int:
         """The conversation, on the client's terminal."""

@@ -268,7 +268,8 @@ def test_a_large_paste_holds_up_nobody(door: Door) -> None:
         assert paster.stdin is not None and paster.stdout is not None
         out = paster.stdout.fileno()
         shown: list[bytes] = []
-        threading.Thread(target=shown.extend, args=(iter(lambda: os.read(out, 65536), b""),), daemon=True).start()  # he reads: it is the keys that are too many
+        reads = iter(lambda: os.read(out, 65536), b"")  # he reads what he is sent: it is the keys that are too many
+        threading.Thread(target=shown.extend, args=(reads,), daemon=True).start()
         try:
             until(lambda: b"pluto>" in b"".join(shown))
             paster.stdin.write(b"x" * 208_000)
@@ -279,6 +280,12 @@ def test_a_large_paste_holds_up_nobody(door: Door) -> None:
             until(lambda: stops(door) == 2)
         finally:
             paster.kill()
+
+
+def test_a_script_that_runs_ahead_of_what_it_drives_is_ended(door: Door) -> None:
+    done = door.say(HOST, text="goto 3 4\n" + "status\n" * 200_000)
+    assert done.returncode == 1 and "characters that wait for the line before them" in done.stderr
+    until(lambda: stops(door) > 0)
 
 
 class Terminal:
