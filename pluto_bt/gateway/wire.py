@@ -50,6 +50,10 @@ class Watch(Frame, frozen=True):
     topics: tuple[str, ...]
 
 
+class Alive(Frame, frozen=True):
+    """Up, now and then: the gateway goes round."""
+
+
 class Scenery(msgspec.Struct, frozen=True):
     """What the web console draws and what does not change: JSON of the map and the robot, and the pictures (PNG) that it names."""
 
@@ -99,7 +103,7 @@ class Farewell(Frame, frozen=True):
     """Down, last: tell the clients and end."""
 
 
-Up: TypeAlias = Ask | Gone | Watch
+Up: TypeAlias = Ask | Gone | Watch | Alive
 Down: TypeAlias = Welcome | Batch | Answer | Farewell
 
 

@@ -257,6 +257,20 @@ def test_the_door_is_opened_again_after_a_crash_and_what_it_drove_stops(door: Do
     assert door.say(HOST, "stop").returncode == 0
 
 
+def test_a_door_that_hangs_is_opened_again_and_what_it_drove_stops(door: Door) -> None:
+    client = door.begin(HOST, "goto", "3", "4")
+    until(has_run(door))
+    first = door.link.pid
+    assert first is not None and not door.link.step(300.0, door.running.address)
+    os.kill(first, signal.SIGSTOP)
+    until(lambda: door.link.step(300.0, door.running.address))
+    until(lambda: stops(door) > 0)
+    assert client.wait(PATIENCE_S) == 255
+    door.link.step(400.0, door.running.address)
+    assert door.link.pid not in (None, first)
+    assert door.say(HOST, "stop").returncode == 0
+
+
 def test_twenty_come_at_once(door: Door) -> None:
     clients = [door.begin(HOST, "status") for _ in range(20)]
     assert [client.wait(PATIENCE_S) for client in clients] == [0] * 20
