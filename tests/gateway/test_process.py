@@ -52,6 +52,15 @@ def test_a_person_talks_to_it_by_hand(running: Running) -> None:
     assert running.robot.did == [("stop", "client 1")]
 
 
+def test_who_has_said_all_drives_no_more(running: Running) -> None:
+    stopped, stop = threading.Event(), running.robot.stop
+    running.robot.stop = lambda source: (stop(source), stopped.set())[0]  # type: ignore[method-assign,func-returns-value]
+    said = talk(running.address, b'<lease op="acquire" ttl_s="60"/><run id="r" node="GoTo" goal="3;4"/>').splitlines()
+    assert [line.split(b" ")[0] for line in said] == [b"<lease_state", b"<ack"]
+    assert stopped.wait(WAIT_S)
+    assert [deed[0] for deed in running.robot.did][:2] == ["run", "stop"]
+
+
 @pytest.mark.parametrize(
     ("rubbish", "code"),
     [
