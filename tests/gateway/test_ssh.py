@@ -214,8 +214,8 @@ def test_forwarding_is_refused(door: Door) -> None:
                 return probe.connect_ex(("127.0.0.1", near)) == 0
 
         until(is_open)
-        with socket.create_connection(("127.0.0.1", near), 5.0) as through:
-            through.settimeout(5.0)
+        with socket.create_connection(("127.0.0.1", near), PATIENCE_S) as through:
+            through.settimeout(PATIENCE_S)
             assert through.recv(1) == b"", "the client listens, but nobody is at the other end"
     finally:
         client.kill()
