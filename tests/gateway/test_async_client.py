@@ -15,6 +15,7 @@ from pluto_bt.gateway.client import AsyncClient
 from pluto_bt.gateway.errors import BadRequestError, NoConnectionError, TurnedAwayError
 from pluto_bt.gateway.listen import Address, open_listener
 from pluto_bt.gateway.port import RunState
+from pluto_bt.runtime.clock import NS, wall_ns
 
 from .conftest import Running
 
