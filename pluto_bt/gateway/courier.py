@@ -10,7 +10,9 @@ from collections.abc import Callable
 
 import msgspec
 
-from pluto_bt.gateway.wire import Down, Frames, Up, pack
+from pluto_bt.gateway.pulse import Pulse
+from pluto_bt.gateway.wire import Alive, Down, Frames, Up, pack
+from pluto_bt.runtime.clock import wall_ns
 
 READ_BYTES = 256 * 1024
 
@@ -19,6 +21,7 @@ class Courier:
     """One Unix socket. `on_frame` is called in the courier's thread.
 
     Attributes:
+        pulse: what comes is heard there.
         ended: the other side is gone; the socket is closed.
     """
 
@@ -29,6 +32,7 @@ class Courier:
         self._lock = threading.Lock()
         self._out = bytearray()
         self._wake_read, self._wake_write = socket.socketpair()
+        self.pulse = Pulse(wall_ns())
         self.ended = False
         self._thread = threading.Thread(target=self._move, name="gateway-courier", daemon=True)
         self._thread.start()
@@ -100,6 +104,8 @@ class Courier:
             data = self._socket.recv(READ_BYTES)
             if not data:
                 return False
+            self.pulse.hear()
             for frame in frames.feed(data):
-                self._on_frame(frame)
+                if not isinstance(frame, Alive):
+                    self._on_frame(frame)
         return True

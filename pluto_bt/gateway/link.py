@@ -15,6 +15,7 @@ from pluto_bt.gateway.listen import Address, open_listener
 from pluto_bt.gateway.offspring import Offspring
 from pluto_bt.gateway.port import RobotPort
 from pluto_bt.gateway.wire import Down, Farewell, Scenery
+from pluto_bt.runtime.clock import wall_ns
 
 CLIENTS_A_PROCESS = 1 << 32
 BACKLOG_BYTES = 256 * 1024
@@ -31,7 +32,8 @@ class GatewayLink:
     """Listens at `address`, in a process of its own; the listening sockets stay ours, so that a restart loses no port and no caller.
     Without an address there is only the web console.
 
-    `listen` (or `start`) raises InputError if the address cannot be had. A gateway that dies is restarted by `step`, later each time it dies soon.
+    `listen` (or `start`) raises InputError if the address cannot be had. A gateway that dies, or hangs, is restarted by `step`, later each time
+    it dies soon.
     """
 
     def __init__(
@@ -92,10 +94,8 @@ class GatewayLink:
         """Answer, publish, and look after the process."""
         if not self._is_open:
             return
-        if self._courier is not None and self._courier.ended:
-            self._process.bury(now_s)
-            self._courier = None
-            self._exchange.gateway_lost()
+        if self._courier is not None and (self._courier.ended or self._courier.pulse.is_lost(wall_ns())):
+            self._bury(now_s, self._courier)
         if self._process.is_due(now_s):
             self.restarts += 1
             self._spawn(now_s)
@@ -120,14 +120,25 @@ class GatewayLink:
         return self._listener is not None or self._web is not None
 
     def _spawn(self, now_s: float) -> None:
-        ours, theirs = socket.socketpair()
-        fds = [-1 if one is None else one.fileno() for one in (theirs, self._listener, self._web)]
-        self._process.begin(now_s, [*map(str, fds)], [fd for fd in fds if fd >= 0])
-        theirs.close()
+        ours = self._process.begin(now_s, (self._listener, self._web))
+        if ours is None:
+            return
         scenery = None if self._console is None else self._console.scenery
         welcome = self._exchange.welcome(self._access, self._limits, 1 + self.restarts * CLIENTS_A_PROCESS, scenery)
-        self._courier = Courier(ours, self._exchange.receive)
-        self._courier.send(welcome)
+        try:
+            self._courier = Courier(ours, self._exchange.receive)
+        except (OSError, RuntimeError):  # no room for its sockets, or for its thread
+            ours.close()
+            self._process.bury(now_s)
+        else:
+            self._courier.send(welcome)
+
+    def _bury(self, now_s: float, courier: Courier) -> None:
+        """It has ended, or hangs."""
+        self._process.bury(now_s)
+        courier.close()
+        self._courier = None
+        self._exchange.gateway_lost()
 
     def _has_room(self) -> bool:
         courier = self._courier

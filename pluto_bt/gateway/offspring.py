@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import socket
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
@@ -32,15 +33,39 @@ class Offspring:
         """It is gone, and nobody has noticed yet."""
         return self._process is not None and self._process.poll() is not None
 
-    def begin(self, now_s: float, words: Sequence[str], fds: Sequence[int], environment: Mapping[str, str] | None = None) -> None:
-        """Start it with these words and inherited sockets."""
+    def begin(
+        self, now_s: float, sockets: Sequence[socket.socket | None], words: Sequence[str] = (), environment: Mapping[str, str] | None = None
+    ) -> socket.socket | None:
+        """Start it; its words are the numbers of its end of a line to us and of these sockets (-1 = None), then `words`.
+
+        Returns:
+            Our end of the line; None if there is no room for a process just now: then it is due again later, as after a death.
+        """
+        self._begun_s, self._due_s = now_s, None
+        try:
+            return self._start(sockets, words, environment or {})
+        except OSError:
+            self.bury(now_s)
+            return None
+
+    def _start(self, sockets: Sequence[socket.socket | None], words: Sequence[str], environment: Mapping[str, str]) -> socket.socket:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            fds = [-1 if one is None else one.fileno() for one in (theirs, *sockets)]
+            try:
+                self._process = self._spawn([*map(str, fds), *words], [fd for fd in fds if fd >= 0], environment)
+            except OSError:
+                ours.close()
+                raise
+        return ours
+
+    def _spawn(self, words: Sequence[str], fds: Sequence[int], environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
         # The program's own path goes along, and -P keeps the current folder out of it: a user's folder must not shadow a package.
         path = os.pathsep.join(entry or os.getcwd() for entry in sys.path)
-        self._process = subprocess.Popen(
+        return subprocess.Popen(
             [sys.executable, "-P", "-c", self._program, *words], pass_fds=fds, stdin=subprocess.DEVNULL,
-            env={**os.environ, "PYTHONPATH": path, **(environment or {})},
+            env={**os.environ, "PYTHONPATH": path, **environment},
         )  # fmt: skip
-        self._begun_s, self._due_s = now_s, None
 
     def is_due(self, now_s: float) -> bool:
         """It died, and should be begun again now."""

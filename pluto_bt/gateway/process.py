@@ -11,8 +11,9 @@ from typing import cast
 from pluto_bt.gateway.burst import fastest
 from pluto_bt.gateway.hub import Hub
 from pluto_bt.gateway.outlets import Outlets
+from pluto_bt.gateway.pulse import BEAT_S
 from pluto_bt.gateway.server import Server
-from pluto_bt.gateway.wire import Answer, Batch, Farewell, Frames, Up, Welcome, pack
+from pluto_bt.gateway.wire import Alive, Answer, Batch, Farewell, Frames, Up, Welcome, pack
 
 FAREWELL_S = 0.2
 
@@ -54,6 +55,12 @@ class ExecutiveProtocol(asyncio.Protocol):
             from pluto_bt.gateway.web.site import Site  # aiohttp is needed only here
 
             self._starting.append(self._loop.create_task(Site(server, welcome.scenery).listen(self._web)))
+        self._beat()
+
+    def _beat(self) -> None:
+        """From the same loop that serves: if one hangs, the other is silent."""
+        self._send(Alive())
+        self._loop.call_later(BEAT_S, self._beat)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Without the executive there is nothing to serve."""

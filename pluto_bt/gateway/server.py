@@ -174,7 +174,10 @@ class ClientProtocol(asyncio.Protocol):
                 self.flush()
 
     def _end_if_served(self) -> None:
-        """A client that has said all is let go when nothing of his is unread or unanswered."""
+        """A client that has said all is let go when nothing of his is unread or unanswered.
+
+        A run that goes on does not keep him: he may as well have been killed, and then what he drives must stop.
+        """
         if self._at_eof and self._taking is None and not self._session.is_waiting and not self._transport.is_closing():
             self._hold()
             self._transport.close()

@@ -14,12 +14,14 @@ import socket
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 
 import asyncssh
 
 from pluto_bt.gateway.key_ring import KeyRing, shown_name
 from pluto_bt.gateway.listen import Address, parse_address
+from pluto_bt.gateway.pulse import BEAT_S
 from pluto_bt.gateway.ssh_visit import Visit
 
 LOGIN_S = 15
@@ -93,6 +95,7 @@ class Door(asyncssh.SSHServer):
 async def serve(listener: socket.socket, leash: socket.socket, house: House, host_key: str) -> None:
     """Serve until the other end of the leash is gone."""
     over = asyncio.Event()
+    leash.setblocking(False)
     asyncio.get_running_loop().add_reader(leash, over.set)
     door = await asyncssh.listen(
         sock=listener, server_factory=lambda: Door(house), server_host_keys=[host_key], config=None, server_version="pluto",
@@ -100,16 +103,27 @@ async def serve(listener: socket.socket, leash: socket.socket, house: House, hos
         x11_forwarding=False, allow_scp=False, sftp_factory=None, compression_algs=["none"], login_timeout=LOGIN_S, line_editor=False,
         keepalive_interval=KEEPALIVE_S, keepalive_count_max=KEEPALIVES, encoding="utf-8", errors="replace",
     )  # fmt: skip
+    beating = asyncio.create_task(_beat(leash))
     await over.wait()
+    beating.cancel()
     door.close()
 
 
+async def _beat(leash: socket.socket) -> None:
+    """From the same loop that serves: if one hangs, the other is silent."""
+    while True:
+        with suppress(OSError):  # nobody reads, or he is gone: then there is nothing to tell
+            leash.send(b".")
+        await asyncio.sleep(BEAT_S)
+
+
 def main() -> None:
-    """`ssh LISTENER_FD LEASH_FD GATEWAY KEYS HOST_KEY`."""
+    """`ssh LEASH_FD LISTENER_FD GATEWAY KEYS HOST_KEY`."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the run's terminal is the executive's
     os.nice(NICENESS)
     logging.getLogger("asyncssh").setLevel(logging.CRITICAL)  # who cannot get in is told so himself
-    listener, leash = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])
+    import_module("pluto_bt.gateway.shell.console")  # now: when the first visitor comes it would hold up all others
+    leash, listener = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])
     gateway, keys, host_key = sys.argv[3:6]
     asyncio.run(serve(listener, leash, House(parse_address(gateway), Path(keys)), host_key))
 

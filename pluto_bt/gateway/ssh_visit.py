@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, TextIO, cast
 
@@ -16,14 +16,15 @@ from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split
 from pluto_bt.gateway.shell.robot import NAME, Robot
 from pluto_bt.gateway.shell.script import play
+from pluto_bt.gateway.ssh_script import Script, TooMuchError
 from pluto_bt.gateway.ssh_stream import Stream
 
 if TYPE_CHECKING:
     from prompt_toolkit.application.current import AppSession
-    from prompt_toolkit.input import PipeInput
+
+    from pluto_bt.gateway.ssh_keyboard import Keyboard
 
 INTERRUPT, END_OF_INPUT = "\x03", "\x04"
-LINE_CHARACTERS = 1 << 16
 ROWS, COLUMNS = 24, 80
 
 
@@ -37,12 +38,11 @@ class Visit(asyncssh.SSHServerSession[str]):
         self._has_terminal = False
         self._command: str | None = None
         self._face: PlainFace
-        self._lines: asyncio.Queue[str] = asyncio.Queue()
-        self._line = ""
+        self._script = Script()
         self._work: asyncio.Task[int] | None = None
         self._ending: asyncio.Task[None] | None = None
         self._stopping: asyncio.Task[int] | None = None
-        self._input: PipeInput | None = None
+        self._keyboard: Keyboard | None = None
         self._app_session: AppSession | None = None
 
     # asyncssh's calls --------------------------------------------------------------------------------------------
@@ -73,29 +73,28 @@ class Visit(asyncssh.SSHServerSession[str]):
 
     def data_received(self, data: str, datatype: int | None) -> None:
         """Keys, or the lines of a script."""
-        if self._input is not None:
-            self._input.send_text(data)
+        if self._keyboard is not None:
+            if not self._keyboard.type(data):
+                self._face.complain("more keys came than a person types; a script comes through a pipe, without a terminal")
+                self._cancel()
         elif self._has_terminal:
             if INTERRUPT in data:
                 self._interrupt()
             elif END_OF_INPUT in data:
                 self._cancel()
         elif self._command is None:
-            *lines, self._line = (self._line + data).split("\n")
-            for line in lines:
-                self._lines.put_nowait(line + "\n")
-            if len(self._line) > LINE_CHARACTERS:
-                self._face.complain(f"expected lines of at most {LINE_CHARACTERS} characters")
+            try:
+                self._script.add(data)
+            except TooMuchError as error:
+                self._face.complain(str(error))
                 self._cancel()
 
     def eof_received(self) -> bool:
         """The script is whole, or the terminal is closed."""
-        if self._input is not None:
-            self._input.send_text(END_OF_INPUT)
+        if self._keyboard is not None:
+            self._keyboard.type(END_OF_INPUT)
         else:
-            self._lines.put_nowait(self._line)
-            if self._line:
-                self._lines.put_nowait("")
+            self._script.end()
         return True
 
     def break_received(self, msec: int) -> bool:
@@ -134,34 +133,30 @@ class Visit(asyncssh.SSHServerSession[str]):
             return await obey(self._robot, self._face, words)
         if self._has_terminal:
             return await self._talk(out)
-        return await play(self._robot, self._face, self._typed())
-
-    async def _typed(self) -> AsyncIterator[str]:
-        while line := await self._lines.get():
-            yield line
+        return await play(self._robot, self._face, self._script.lines())
 
     async def _talk(self, out: TextIO) -> int:
         """The conversation, on the client's terminal."""
         from prompt_toolkit.application.current import create_app_session
         from prompt_toolkit.data_structures import Size
-        from prompt_toolkit.input import create_pipe_input
         from prompt_toolkit.output.vt100 import Vt100_Output
 
         from pluto_bt.gateway.shell.console import Console, history_of
+        from pluto_bt.gateway.ssh_keyboard import Keyboard
 
         def size() -> Size:
             width, height, *_ = self._channel.get_terminal_size()
             return Size(rows=height or ROWS, columns=width or COLUMNS)
 
-        with create_pipe_input() as keys:
-            output = Vt100_Output(out, size, term=self._channel.get_terminal_type())
-            with create_app_session(input=keys, output=output) as self._app_session:
-                console = Console(self._robot, history_of("ssh_history"), may_read_files=False, has_signals=False)
-                self._input = keys
-                try:
-                    return await console.talk()
-                finally:
-                    self._input = None
+        keyboard = Keyboard()
+        output = Vt100_Output(out, size, term=self._channel.get_terminal_type())
+        with create_app_session(input=keyboard, output=output) as self._app_session:
+            console = Console(self._robot, history_of("ssh_history"), may_read_files=False, has_signals=False)
+            self._keyboard = keyboard
+            try:
+                return await console.talk()
+            finally:
+                self._keyboard = None
 
     async def _end(self, work: asyncio.Task[int]) -> None:
         """The exit code to the client, and nothing left behind."""

@@ -76,6 +76,10 @@ class Watch(Frame, frozen=True):
     topics: tuple[str, ...]
 
 
+class Alive(Frame, frozen=True):
+    """Up, now and then: the gateway goes round."""
+
+
 class Scenery(msgspec.Struct, frozen=True):
     """What the web console draws and what does not change: JSON of the map and the robot, and the pictures (PNG) that it names."""
 
@@ -125,7 +129,7 @@ class Farewell(Frame, frozen=True):
     """Down, last: tell the clients and end."""
 
 
-Up: TypeAlias = Ask | Gone | Watch | Refused
+Up: TypeAlias = Ask | Gone | Watch | Refused | Alive
 Down: TypeAlias = Welcome | Batch | Answer | Farewell
 
 

@@ -84,7 +84,7 @@ class Gateway:
         """What operators should know of the process."""
         is_back = link.restarts != self._restarts
         if (link.is_lost or is_back) and not self._is_lost:
-            self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended; it is started again")
+            self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended, or hung; it is started again")
         if is_back:
             self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
         self._restarts, self._is_lost = link.restarts, link.is_lost

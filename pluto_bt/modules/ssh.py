@@ -42,7 +42,7 @@ class Ssh:
         """Look after the process."""
         gateway = self._gateway()
         if gateway is not None and self._link.step(now_s, gateway):
-            self._context.say("warning", "ssh-died", "ssh", "the process of the ssh door died; it is started again")
+            self._context.say("warning", "ssh-died", "ssh", "the process of the ssh door died, or hung; it is started again")
 
     def stop(self) -> None:
         """Send everybody away, and free the port."""

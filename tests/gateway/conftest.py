@@ -15,9 +15,11 @@ from pluto_bt.gateway.link import Console, GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.replies import Item
 from pluto_bt.gateway.uring import Uring
-from pluto_bt.runtime.clock import MonotonicClock
+from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 
 from .robot import FakeRobot
+
+PATIENCE_S = 20.0
 
 
 class Running:
@@ -47,9 +49,11 @@ class Running:
 
     def wait_until_nobody_is_there(self) -> None:
         """Until the executive knows that every client is gone, and what that entails is done."""
-        exchange = self.link._exchange
+        exchange, pause = self.link._exchange, threading.Event()
+        until_ns = wall_ns() + round(PATIENCE_S * NS)
         while exchange._watched or exchange._desk._leases.held is not None:
-            pass
+            assert wall_ns() < until_ns, f"watched: {exchange._watched}, lease: {exchange._desk._leases.held}"
+            wait(pause, 0.001)
 
     def pump(self) -> None:
         """Begin to step."""

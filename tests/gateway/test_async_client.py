@@ -15,6 +15,7 @@ from pluto_bt.gateway.client import AsyncClient
 from pluto_bt.gateway.errors import BadRequestError, NoConnectionError, TurnedAwayError
 from pluto_bt.gateway.listen import Address, open_listener
 from pluto_bt.gateway.port import RunState
+from pluto_bt.runtime.clock import NS, wall_ns
 
 from .conftest import Running
 
@@ -113,7 +114,9 @@ def test_a_stop_that_was_given_up_is_not_said_again_later(running: Running) -> N
 
 
 def wait_for(holds: Callable[[], bool]) -> None:
+    begun_ns = wall_ns()
     while not holds():
+        assert wall_ns() - begun_ns < 20 * NS
         threading.Event().wait(0.005)
 
 

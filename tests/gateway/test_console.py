@@ -246,8 +246,9 @@ def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Sc
 def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.waits_for("#verdict", "Standing")
-    pid = running.link.pid
+    pid, goes_on = running.link.pid, threading.Event()
     assert pid is not None
+    running.on_step = lambda: goes_on.wait() and None  # the whole computer stands still: else the gateway would be replaced
     os.kill(pid, signal.SIGSTOP)
     try:
         screen.waits_for("#link", "silent")
@@ -255,6 +256,7 @@ def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Ca
         screen.waits_for("#no-link", "No link")
     finally:
         os.kill(pid, signal.SIGCONT)
+        goes_on.set()
     screen.waits_for("#link", "ms")
     screen.waits_for("#verdict", "Standing")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 import socket
@@ -18,6 +19,7 @@ from pluto_bt.gateway.client import Client, GatewayError
 from pluto_bt.gateway.errors import TurnedAwayError
 from pluto_bt.gateway.exchange import Exchange
 from pluto_bt.gateway.limits import Limits
+from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address, open_listener, parse_address
 from pluto_bt.gateway.wire import pack
 from pluto_bt.source import InputError
@@ -48,6 +50,15 @@ def test_a_person_talks_to_it_by_hand(running: Running) -> None:
     said = talk(running.address, b'<hello version="1.0"/>\n<get topic="Localization/Pose"/>\n<stop/>\n').splitlines()
     assert [line.split(b" ")[0] for line in sorted(said)] == [b"<hello", b"<ok/>", b"<value"]
     assert running.robot.did == [("stop", "client 1")]
+
+
+def test_who_has_said_all_drives_no_more(running: Running) -> None:
+    stopped, stop = threading.Event(), running.robot.stop
+    running.robot.stop = lambda source: (stop(source), stopped.set())[0]  # type: ignore[method-assign,func-returns-value]
+    said = talk(running.address, b'<lease op="acquire" ttl_s="60"/><run id="r" node="GoTo" goal="3;4"/>').splitlines()
+    assert [line.split(b" ")[0] for line in said] == [b"<lease_state", b"<ack"]
+    assert stopped.wait(WAIT_S)
+    assert [deed[0] for deed in running.robot.did][:2] == ["run", "stop"]
 
 
 @pytest.mark.parametrize(
@@ -136,6 +147,42 @@ def test_a_killed_gateway_comes_back_and_loses_nothing(running: Running) -> None
         assert again.request("stop").tag == "ok"
     assert running.link.restarts == 1
     assert [deed[0] for deed in running.robot.did][:2] == ["run", "stop"]
+
+
+def test_a_gateway_that_hangs_is_replaced(running: Running) -> None:
+    with running.client(name="anna") as held:
+        pid = running.link.pid
+        assert pid is not None
+        os.kill(pid, signal.SIGSTOP)
+        with pytest.raises(GatewayError, match=r"closed|gone"):
+            held.receive(WAIT_S)
+    with running.client(name="ben") as client:
+        assert client.request("stop").tag == "ok"
+    assert running.link.restarts == 1 and running.link.pid not in (None, pid)
+
+
+@pytest.mark.parametrize("module", ["subprocess.Popen", "socket.socketpair", "pluto_bt.gateway.link.Courier"])
+def test_a_computer_without_room_for_a_process_has_its_gateway_later(monkeypatch: pytest.MonkeyPatch, module: str) -> None:
+    def refuse(*given: object, **named: object) -> None:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    link = GatewayLink(FakeRobot(), Address("127.0.0.1", 0))
+    link.listen()
+    open_before = len(os.listdir("/dev/fd"))
+    with monkeypatch.context() as patch:
+        patch.setattr(module, refuse)
+        link.start(0.0)
+        link.step(0.0)
+        assert link.is_lost and len(os.listdir("/dev/fd")) == open_before
+    link.step(0.1)
+    assert link.is_lost, "it was refused twice: not at once again"
+    link.step(60.0)
+    try:
+        assert link.address is not None
+        with Client(*link.address, timeout_s=WAIT_S, backoff=None, name="x") as client:
+            assert client.request("ping").tag == "pong"
+    finally:
+        link.stop()
 
 
 def test_the_end_of_the_run_is_told_to_all(running: Running) -> None:

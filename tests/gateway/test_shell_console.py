@@ -35,6 +35,8 @@ class Screen:
 
     encoding = "utf-8"
 
+    console: Console
+
     def __init__(self) -> None:
         self.text = ""
 
@@ -58,11 +60,11 @@ def plain(text: str) -> str:
     return re.sub(r"\x1b\[[0-9;?]*[a-zA-Z]", "", text)
 
 
-async def until(holds: Callable[[], bool], told: Callable[[], str] = lambda: "") -> None:
+async def until(holds: Callable[[], bool], told: Callable[[], str] = lambda: "", every_s: float = 0.01) -> None:
     try:
         async with asyncio.timeout(PATIENCE_S):
             while not holds():
-                await asyncio.sleep(0.01)
+                await asyncio.sleep(every_s)
     except TimeoutError:
         raise AssertionError(told()) from None
 
@@ -73,7 +75,7 @@ def talk(running: Running, story: Callable[[PipeInput, Screen], object]) -> None
     async def play() -> None:
         screen = Screen()
         with create_pipe_input() as keys, create_app_session(keys, Vt100_Output(screen, lambda: Size(24, 110), term="xterm", enable_cpr=False)):  # type: ignore[arg-type]
-            console = Console(Robot(running.address), InMemoryHistory(), may_read_files=False, has_signals=False)
+            console = screen.console = Console(Robot(running.address), InMemoryHistory(), may_read_files=False, has_signals=False)
             talking = asyncio.create_task(console.talk())
             try:
                 await story(keys, screen)  # type: ignore[misc]
@@ -103,7 +105,7 @@ def running(lasting: Running) -> Running:
 def test_commands_and_events_stand_above_the_prompt(running: Running) -> None:
     async def story(keys: PipeInput, screen: Screen) -> None:
         await screen.shows("Ctrl-C stops the robot", "pluto>")
-        await asyncio.sleep(0.3)  # until it listens
+        await until(lambda: bool(screen.console._live.names))  # asked for after the events: it listens
         running.robot.says("mind \x1b[2J the step")
         await screen.shows("test: mind ")
         keys.send_text("status\r")
@@ -165,15 +167,17 @@ def test_arrow_keys_drive_and_letting_go_is_zero_velocity(running: Running) -> N
     async def story(keys: PipeInput, screen: Screen) -> None:
         await screen.shows("pluto>")
         keys.send_text("drive 0.4\r")
-        await screen.shows("arrows drive")
-        await asyncio.sleep(0.3)  # until the drive has spoken
-        for _ in range(8):
+        await screen.shows("arrows drive", "+0.00 m/s")  # the drive has spoken
+
+        def hold() -> bool:
+            """As the key repeats, until the limit is asked for."""
             keys.send_text("\x1b[A")
-            await asyncio.sleep(0.05)
-        await until(lambda: commands()[-1:] == [("motion", 30, (0.4, 0.0))], lambda: str(commands()))
+            return ("motion", 30, (0.4, 0.0)) in commands()
+
+        await until(hold, lambda: str(commands()), every_s=0.05)
         await until(lambda: commands()[-1:] == [("motion", 30, (0.0, 0.0))], lambda: str(commands()))
         keys.send_text("\x1b[D")
-        await until(lambda: commands()[-1][2][1] > 0.0)  # type: ignore[index]
+        await until(lambda: any(did[2][1] > 0.0 for did in commands()))  # type: ignore[index]
         keys.send_text(" ")
         await until(lambda: commands()[-1] == ("motion", 30, (0.0, 0.0)))
         count = len(commands())
@@ -196,8 +200,8 @@ def test_run_is_left_to_itself_by_ctrl_d(running: Running) -> None:
         await screen.shows("pluto>")
         keys.send_text("run trip2\r")
         await until(lambda: any(did[0] == "start" for did in running.robot.did))
-        await asyncio.sleep(0.1)
-        screen.text = ""
+        running.robot.write("mission/state", m.MissionState(0.0, "trip2", 1, "running", "", "go"))
+        await screen.shows("running")
         keys.send_text("\x04")
         await screen.shows("a mission goes on by itself", "pluto>")
 

@@ -214,8 +214,8 @@ def test_forwarding_is_refused(door: Door) -> None:
                 return probe.connect_ex(("127.0.0.1", near)) == 0
 
         until(is_open)
-        with socket.create_connection(("127.0.0.1", near), 5.0) as through:
-            through.settimeout(5.0)
+        with socket.create_connection(("127.0.0.1", near), PATIENCE_S) as through:
+            through.settimeout(PATIENCE_S)
             assert through.recv(1) == b"", "the client listens, but nobody is at the other end"
     finally:
         client.kill()
@@ -257,10 +257,49 @@ def test_the_door_is_opened_again_after_a_crash_and_what_it_drove_stops(door: Do
     assert door.say(HOST, "stop").returncode == 0
 
 
+def test_a_door_that_hangs_is_opened_again_and_what_it_drove_stops(door: Door) -> None:
+    client = door.begin(HOST, "goto", "3", "4")
+    until(has_run(door))
+    first = door.link.pid
+    assert first is not None and not door.link.step(300.0, door.running.address)
+    os.kill(first, signal.SIGSTOP)
+    until(lambda: door.link.step(300.0, door.running.address))
+    until(lambda: stops(door) > 0)
+    assert client.wait(PATIENCE_S) == 255
+    door.link.step(400.0, door.running.address)
+    assert door.link.pid not in (None, first)
+    assert door.say(HOST, "stop").returncode == 0
+
+
 def test_twenty_come_at_once(door: Door) -> None:
     clients = [door.begin(HOST, "status") for _ in range(20)]
     assert [client.wait(PATIENCE_S) for client in clients] == [0] * 20
     assert all("nobody drives" in (client.stdout.read() if client.stdout else "") for client in clients)
+
+
+def test_a_large_paste_holds_up_nobody(door: Door) -> None:
+    with subprocess.Popen(door.words("-tt", HOST), stdin=subprocess.PIPE, stdout=subprocess.PIPE) as paster:
+        assert paster.stdin is not None and paster.stdout is not None
+        out = paster.stdout.fileno()
+        shown: list[bytes] = []
+        reads = iter(lambda: os.read(out, 65536), b"")  # he reads what he is sent: it is the keys that are too many
+        threading.Thread(target=shown.extend, args=(reads,), daemon=True).start()
+        try:
+            until(lambda: b"pluto>" in b"".join(shown))
+            paster.stdin.write(b"x" * 208_000)
+            paster.stdin.flush()
+            assert door.say(HOST, "stop").returncode == 0 and stops(door) == 1
+            paster.stdin.write(b"\x03")
+            paster.stdin.flush()
+            until(lambda: stops(door) == 2)
+        finally:
+            paster.kill()
+
+
+def test_a_script_that_runs_ahead_of_what_it_drives_is_ended(door: Door) -> None:
+    done = door.say(HOST, text="goto 3 4\n" + "status\n" * 200_000)
+    assert done.returncode == 1 and "characters that wait for the line before them" in done.stderr
+    until(lambda: stops(door) > 0)
 
 
 class Terminal:

@@ -246,11 +246,13 @@ def test_connections_that_ask_for_nothing_are_ended_and_others_are_not(monkeypat
         for reader, _ in idle:
             with suppress(ConnectionError):
                 assert await asyncio.wait_for(reader.read(), 10.0) == b""
+        may_end.set()
         assert b"here it is" in await asyncio.wait_for(asks[0].readuntil(b"here it is"), 10.0), "it asked, and was waited for"
         serving.cancel()
 
     async def slow(request: web.Request) -> web.Response:
-        await asyncio.sleep(2.0)
+        await may_end.wait()
         return web.Response(text="here it is")
 
+    may_end = asyncio.Event()
     asyncio.run(story())

@@ -111,6 +111,7 @@ def test_a_long_session_validates(tmp_path: Path) -> None:
     assert talk.result.result == "SUCCESS"
     nodes = {node.get("name"): node for node in talk.told("t")[0]}
     assert nodes["ahead"].get("status") == "RUNNING" and float(nodes["ahead"].get("since_s")) >= 0.0
+    # Lockstep: these are seconds of the run, whatever the computer does beside it.
     ages = {module.get("name"): float(module.get("age_s")) for module in talk.told("m")[0]}
     assert ages["drive"] <= 0.05 and ages["executive"] <= 0.1
     assert "<GoTo" in talk.told("f")[0].findtext("document")

@@ -15,6 +15,8 @@ from prompt_toolkit.key_binding.key_processor import KeyPress
 from prompt_toolkit.layout import HSplit, Layout, Window
 from prompt_toolkit.layout.controls import FormattedTextControl
 
+KEYS_AHEAD = 4096
+"""As many as a line discipline holds; what is typed or pasted beyond them while a command goes on is forgotten."""
 HINT = "Ctrl-C stops the robot, Ctrl-D leaves"
 
 
@@ -108,7 +110,7 @@ class BusyScreen:
             key = event.key_sequence[0].key
             if self._shown is not None:
                 self._keys.put_nowait("space" if key == " " else str(getattr(key, "value", key)))
-            else:
+            elif len(self._ahead) < KEYS_AHEAD:
                 self._ahead += event.key_sequence
 
         return bindings
