@@ -105,6 +105,21 @@ def test_stop_says_when_zero_was_commanded(open_console: Callable[..., Screen], 
     assert robot.did == [("stop", "console")], "once, without a lease, and the button was not pressed by the space bar"
 
 
+def test_the_stop_button_takes_its_word_back_when_the_robot_drives_again(open_console: Callable[..., Screen], running: Running) -> None:
+    robot = running.robot
+    screen = open_console()
+    screen.click("#stop")
+    screen.waits_for("#stop-note", "heard")
+    assert "zero" not in screen.text("#stop-note"), "nobody has told what the base was commanded"
+    for moving in ("Command", "Raw"):
+        robot.write("ATRV2/Drive/Command", m.ActuatorState(0.0, 0))
+        robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0))
+        screen.waits_for("#stop-note", "standing")
+        robot.write(f"ATRV2/Drive/{moving}", m.ActuatorState(0.0, 0, velocity=(0.45, 0.0)))
+        screen.waits_for("#stop-note", "space bar")
+        screen.click("#stop")
+
+
 def test_a_space_in_a_text_is_a_space(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.click("#tab-params")
@@ -358,7 +373,7 @@ def test_with_people_known_by_tokens_the_page_asks_for_one(browser: Any) -> None
             screen.page.keyboard.press("Enter")
         screen.waits_for("#link", "ms")
         screen.click("#stop")
-        screen.waits_for("#stop-note", "zero commanded")
+        screen.waits_for("#stop-note", "heard")
     finally:
         screen.close()
         one.end()

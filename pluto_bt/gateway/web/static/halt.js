@@ -1,4 +1,5 @@
-// STOP: heard from anyone at any time. What the button says is what is known: sent, zero commanded, standing.
+// STOP: heard from anyone at any time. What the button says is what is known: sent, heard, zero commanded, standing; and it is taken back
+// as soon as it is no longer true.
 
 import { byId, say, show, toast } from "./dom.js";
 
@@ -13,8 +14,11 @@ export class Halt {
     byId("release").onclick = () => this.release();
     store.on("ATRV2/Drive/Command", () => this.look());
     store.on("ATRV2/Drive/Raw", () => this.look());
-    link.on("up", () => this.tell(""));
-    link.on("down", () => this.tell("no link: use the robot's own switch", "bad"));
+    link.on("up", () => this.takeBack());
+    link.on("down", () => {
+      this.phase = "";
+      this.tell("no link: use the robot's own switch", "bad");
+    });
     link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") this.held(code === "estop"); });
     window.addEventListener("keydown", (event) => this.key(event), { capture: true });
   }
@@ -46,23 +50,31 @@ export class Halt {
       this.tell(error.message, "bad");
       return;
     }
-    this.phase = "obeyed";
+    this.phase = "heard";
+    this.tell("sent, and heard", "busy");
     this.look();
   }
 
-  /** The newest command that the base took, and what its wheels do. */
+  /** The newest command that the base took, and what its wheels do; what is not known is not said. */
   look() {
-    if (this.phase === "obeyed" && isZero(this.store.fields("ATRV2/Drive/Command")?.velocity ?? [0, 0], 0, 0)) {
+    const commanded = this.store.fields("ATRV2/Drive/Command")?.velocity;
+    const driven = this.store.isStale("ATRV2/Drive/Raw") ? undefined : this.store.fields("ATRV2/Drive/Raw").velocity;
+    if (this.phase === "heard" && isZero(commanded, 0, 0)) {
       this.phase = "zero";
       byId("stop").dataset.zeroMs = String(Math.round(performance.now() - this.begun_ms));
       this.tell(`zero commanded in ${byId("stop").dataset.zeroMs} ms`, "good");
-    }
-    if (this.phase === "zero" && isZero(this.store.fields("ATRV2/Drive/Raw")?.velocity ?? [1, 1], STANDS_MPS, STANDS_RADPS)) {
-      this.phase = "";
+    } else if (["zero", "standing"].includes(this.phase) && !isZero(commanded, 0, 0)) this.takeBack();
+    if (this.phase === "zero" && isZero(driven, STANDS_MPS, STANDS_RADPS)) {
+      this.phase = "standing";
       this.tell(`standing · zero in ${byId("stop").dataset.zeroMs} ms`, "good");
       clearTimeout(this.timer);
-      this.timer = setTimeout(() => !this.phase && this.link.isUp && this.tell(""), TOLD_MS);
-    }
+      this.timer = setTimeout(() => this.phase === "standing" && this.takeBack(), TOLD_MS);
+    } else if (this.phase === "standing" && !isZero(driven, STANDS_MPS, STANDS_RADPS)) this.takeBack();
+  }
+
+  takeBack() {
+    this.phase = "";
+    this.tell("");
   }
 
   tell(text, mood = "") {
@@ -89,7 +101,8 @@ export class Halt {
   }
 }
 
-const isZero = (velocity, speed, turn) => Math.abs(velocity[0]) <= speed && Math.abs(velocity[1]) <= turn;
+/** False for a velocity that is not known. */
+const isZero = (velocity, speed, turn) => velocity !== undefined && Math.abs(velocity[0]) <= speed && Math.abs(velocity[1]) <= turn;
 
 export function isTyping(target) {
   return target instanceof HTMLElement && (target.isContentEditable || target.tagName === "TEXTAREA"
