@@ -1,17 +1,26 @@
 // STOP: heard from anyone at any time. What the button says is what is known: sent, heard, zero commanded, standing; and it is taken back
 // as soon as it is no longer true.
 
+import { askOnce } from "./doorbell.js";
 import { byId, say, show, toast } from "./dom.js";
 
 const STANDS_MPS = 0.01, STANDS_RADPS = 0.01, TOLD_MS = 6000;
 const AT_REST = matchMedia("(pointer: coarse)").matches ? "for anyone, at any time" : "space bar";
 
 export class Halt {
-  constructor(link, store, lease) {
-    Object.assign(this, { link, store, lease, begun_ms: null, phase: "" });
+  /** From the first moment on: a stop needs no token, no scenery and no link that stands. */
+  constructor() {
+    Object.assign(this, { link: null, store: null, lease: null, begun_ms: null, phase: "" });
     byId("stop").onclick = () => this.stop();
     byId("estop").onclick = () => this.estop();
     byId("release").onclick = () => this.release();
+    window.addEventListener("keydown", (event) => this.key(event), { capture: true });
+    this.tell("");
+  }
+
+  /** From here on the link carries the orders, and what it brings is told. */
+  join(link, store, lease) {
+    Object.assign(this, { link, store, lease });
     store.on("ATRV2/Drive/Command", () => this.look());
     store.on("ATRV2/Drive/Raw", () => this.look());
     link.on("up", () => this.takeBack());
@@ -20,7 +29,6 @@ export class Halt {
       this.tell("no link: use the robot's own switch", "bad");
     });
     link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") this.held(code === "estop"); });
-    window.addEventListener("keydown", (event) => this.key(event), { capture: true });
   }
 
   /** The space bar, wherever one is; only where text is typed it is a space. */
@@ -44,15 +52,14 @@ export class Halt {
     this.phase = "sent";
     this.tell("sent …", "busy");
     try {
-      await this.link.ask(tag, given);
+      await (this.link?.isUp ? this.link.ask(tag, given) : askOnce(tag, given));
     } catch (error) {
       this.phase = "";
       this.tell(error.message, "bad");
       return;
     }
-    this.phase = "heard";
-    this.tell("sent, and heard", "busy");
-    this.look();
+    this.reached("heard", "sent, and heard", "busy");
+    if (this.store) this.look();
   }
 
   /** The newest command that the base took, and what its wheels do; what is not known is not said. */
@@ -60,16 +67,20 @@ export class Halt {
     const commanded = this.store.fields("ATRV2/Drive/Command")?.velocity;
     const driven = this.store.isStale("ATRV2/Drive/Raw") ? undefined : this.store.fields("ATRV2/Drive/Raw").velocity;
     if (this.phase === "heard" && isZero(commanded, 0, 0)) {
-      this.phase = "zero";
       byId("stop").dataset.zeroMs = String(Math.round(performance.now() - this.begun_ms));
-      this.tell(`zero commanded in ${byId("stop").dataset.zeroMs} ms`, "good");
+      this.reached("zero", `zero commanded in ${byId("stop").dataset.zeroMs} ms`);
     } else if (["zero", "standing"].includes(this.phase) && !isZero(commanded, 0, 0)) this.takeBack();
     if (this.phase === "zero" && isZero(driven, STANDS_MPS, STANDS_RADPS)) {
-      this.phase = "standing";
-      this.tell(`standing · zero in ${byId("stop").dataset.zeroMs} ms`, "good");
-      clearTimeout(this.timer);
-      this.timer = setTimeout(() => this.phase === "standing" && this.takeBack(), TOLD_MS);
+      this.reached("standing", `standing · zero in ${byId("stop").dataset.zeroMs} ms`);
     } else if (this.phase === "standing" && !isZero(driven, STANDS_MPS, STANDS_RADPS)) this.takeBack();
+  }
+
+  /** So far the order has come; told for a while. */
+  reached(phase, text, mood = "good") {
+    this.phase = phase;
+    this.tell(text, mood);
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.phase === phase && this.takeBack(), TOLD_MS);
   }
 
   takeBack() {

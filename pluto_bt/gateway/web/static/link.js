@@ -7,6 +7,8 @@ const LOST_MS = 2500; // no byte for so long: what is shown is old
 const BACK_OFF_MS = [250, 500, 1000, 2000];
 const ANSWER_MS = 5000, FAULTS_MS = 30;
 
+export const socketAddress = () => `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`;
+
 export class Refused extends Error {
   /** `faults`: everything that was said against the request. */
   constructor(faults) {
@@ -36,7 +38,7 @@ export class Link {
   }
 
   connect() {
-    const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`);
+    const socket = new WebSocket(socketAddress());
     this.socket = socket;
     this.opened_ms = performance.now();
     // The session is this connection's own: a lost one ends its lease, and nothing is taken up again behind the operator's back.
