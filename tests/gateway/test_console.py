@@ -258,6 +258,25 @@ def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Sc
     screen.page.wait_for_selector("#no-link", state="hidden")
 
 
+def test_a_connection_on_which_nobody_says_hello_is_given_up(browser: Any, running: Running) -> None:
+    """Something between the page and the robot takes the first connection, and never says a word."""
+    tried: list[Any] = []
+
+    def meet(socket: Any) -> None:
+        tried.append(socket)
+        if len(tried) > 1:
+            socket.connect_to_server()
+
+    context = browser.new_context()
+    page = context.new_page()
+    page.route_web_socket("**/socket", meet)
+    page.goto(running.url)
+    page.wait_for_function("() => document.querySelector('#link').textContent.includes('ms')", timeout=20_000)
+    assert len(tried) == 2
+    context.close()
+    running.wait_until_nobody_is_there()
+
+
 def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.waits_for("#verdict", "Standing")

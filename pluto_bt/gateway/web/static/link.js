@@ -49,10 +49,13 @@ export class Link {
   }
 
   async greet() {
+    const { socket } = this;
     try {
       await this.ask("hello", { version: "1.0", name: this.name, session: this.session, token: this.token || undefined });
     } catch (error) {
       if (error.code === "unauthorised") this.tell("unauthorised", error);
+      socket.close(); // a connection that is not answered would stay open, and no other one be tried
+      this.closed(socket);
       return;
     }
     this.isUp = true;
