@@ -233,18 +233,28 @@ def test_driving_begins_with_the_velocity_in_force_and_letting_go_is_zero(open_c
 
 
 def test_the_emergency_stop_holds_until_it_is_released(open_console: Callable[..., Screen], running: Running) -> None:
-    screen = open_console()
+    screen = open_console("/?name=Anna")
     screen.click("#estop")
-    running.robot.says("emergency stop: console", "error", "estop")
-    screen.waits_for("#estop-note", "latched")
-    screen.page.wait_for_selector("#release")
+    screen.waits_for("#estop-note", "latched")  # a state: this robot tells of it in no event
+    screen.waits_for("#causes", "console Anna pressed E-STOP")
     other = open_console()
     other.waits_for("#estop-note", "latched")
     screen.click("#release")
-    running.robot.says("emergency stop released", "info", "estop-released")
     for one in (screen, other):
         one.page.wait_for_selector("#release", state="hidden")
     assert [entry[0] for entry in running.robot.did] == ["estop", "release"]
+
+
+def test_the_verdict_goes_with_the_wheels(open_console: Callable[..., Screen], running: Running) -> None:
+    """Asked anew as soon as they do something else, not at the next turn."""
+    robot = running.robot
+    robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0, velocity=(0.4, 0.0)))
+    screen = open_console()
+    screen.waits_for("#verdict", "Moving")
+    screen.page.evaluate("() => { for (let i = 0; i < 10000; i++) clearInterval(i); }")
+    while screen.text("#verdict") != "Standing":
+        robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0))
+        screen.page.wait_for_timeout(20)
 
 
 def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Screen], running: Running) -> None:

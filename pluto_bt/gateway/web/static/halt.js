@@ -10,7 +10,7 @@ const AT_REST = matchMedia("(pointer: coarse)").matches ? "for anyone, at any ti
 export class Halt {
   /** From the first moment on: a stop needs no token, no scenery and no link that stands. */
   constructor() {
-    Object.assign(this, { link: null, store: null, lease: null, begun_ms: null, phase: "" });
+    Object.assign(this, { link: null, store: null, lease: null, why: null, begun_ms: null, phase: "" });
     byId("stop").onclick = () => this.stop();
     byId("estop").onclick = () => this.estop();
     byId("release").onclick = () => this.release();
@@ -18,9 +18,10 @@ export class Halt {
     this.tell("");
   }
 
-  /** From here on the link carries the orders, and what it brings is told. */
-  join(link, store, lease) {
-    Object.assign(this, { link, store, lease });
+  /** From here on the link carries the orders, and what it brings is told. That the robot is latched is known from the answer to `why`. */
+  join(link, store, lease, why) {
+    Object.assign(this, { link, store, lease, why });
+    why.isLatched = (isHeld) => this.held(isHeld);
     store.on("ATRV2/Drive/Command", () => this.look());
     store.on("ATRV2/Drive/Raw", () => this.look());
     link.on("up", () => this.takeBack());
@@ -28,7 +29,7 @@ export class Halt {
       this.phase = "";
       this.tell("no link: use the robot's own switch", "bad");
     });
-    link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") this.held(code === "estop"); });
+    link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") why.look(); });
   }
 
   /** The space bar, wherever one is; only where text is typed it is a space. */
@@ -44,7 +45,7 @@ export class Halt {
   }
 
   estop() {
-    this.order("estop", { reason: "console" });
+    this.order("estop", { reason: `${this.link?.name ?? "somebody at the console"} pressed E-STOP` });
   }
 
   async order(tag, given) {
@@ -104,7 +105,7 @@ export class Halt {
     try {
       if (!this.lease.isMine) await this.lease.acquire();
       await this.link.ask("release", { what: "estop" });
-      this.held(false);
+      this.why.look();
       toast("Released. Nothing moves until it is commanded.", true);
     } catch (error) {
       toast(error.message);

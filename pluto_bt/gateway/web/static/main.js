@@ -53,7 +53,8 @@ function showRobot({ scenery, store, tabs, tree, events, token, halt }) {
   const lease = new Lease(link), orders = new Orders(link, store, lease), bar = new Bar(store, scenery.robot, link), why = new Why(link);
   Object.defineProperty(why, "now_s", { get: () => bar.now_s });
   tree.clock = () => bar.now_s;
-  halt.join(link, store, lease);
+  why.watch(store);
+  halt.join(link, store, lease, why);
   new Mission(link, store, lease);
   const modules = new Modules(link, store);
   tabs.onOpen("modules", () => modules.look());
