@@ -72,7 +72,7 @@ function showBox({ scenery, store, tabs, tree, events }) {
   const modules = new Modules(null, store);
   tabs.onOpen("modules", () => modules.look());
   box.on("events", (list) => events.replace(list));
-  box.on("moment", () => { bar.clock_s = 0; });
+  box.on("moment", () => { bar.tick(box.wanted_s); });
   box.on("why", (answer) => why.show(answer.moving === "true", answer.rows, box.wanted_s));
   tree.clock = () => box.wanted_s;
   const map = new MapView(byId("map"), store, scenery, () => {});
