@@ -9,11 +9,23 @@ const ANSWER_MS = 5000, FAULTS_MS = 30;
 
 export const socketAddress = () => `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`;
 
+/** What the buttons of this page do about a refusal, instead of what a program would have to send. */
+const CURES = {
+  "lease-held": (text) => `${text.split(/ for another|;/)[0]}. Take over takes it away.`,
+  "read-only": (text) => `Your token does not allow that: ${text}. Ask who runs the robot for one that does.`,
+};
+
 export class Refused extends Error {
-  /** `faults`: everything that was said against the request. */
+  /** `faults`: everything that was said against the request. The message is for a person at this page. */
   constructor(faults) {
-    super(faults.map(({ line, col, text, code }) => (line ? `${line}:${col} ` : "") + (text || code)).join("\n"));
+    super(faults.map(({ text, code }) => CURES[code]?.(text) ?? (text || code)).join("\n"));
     this.code = faults[0].code;
+    this.faults = faults;
+  }
+
+  /** Each with the line and column of the document that it was found in. */
+  get lines() {
+    return this.faults.map(({ line, col, text, code }) => (line ? `${line}:${col} ` : "") + (text || code));
   }
 }
 
