@@ -20,7 +20,7 @@ from pluto_bt.maps.load import load_world
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.modules.scenery import scenery
 
-from .browsers import PHONE, Screen, chromium
+from .browsers import ACROSS, PHONE, Screen, chromium
 from .conftest import Running
 
 EVIL = '<img src=x onerror="document.title=\'taken\'"><script>document.title="taken"</script>'
@@ -66,6 +66,12 @@ def open_console(browser: Any, running: Running) -> Iterator[Callable[..., Scree
     running.wait_until_nobody_is_there()
 
 
+UPPERMOST = """(button) => {
+  const { left, top, width, height } = button.getBoundingClientRect();
+  return document.elementFromPoint(left + width / 2, top + height / 2) === button;
+}"""
+
+
 def node(path: str, kind: str, name: str, depth: int, status: str = "IDLE", feedback: str = "") -> m.NodeState:
     return m.NodeState(path, kind, name, depth, status, feedback, 0.0)
 
@@ -83,6 +89,39 @@ def test_it_loads_without_a_complaint_and_shows_where_the_robot_is(
     assert box["y"] + box["height"] <= size[1] and box["width"] >= 200 and box["height"] >= 60, "STOP is always in sight, and large"
     assert screen.page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     assert screen.complaints == []
+
+
+@pytest.mark.parametrize("size", [(1280, 800), PHONE, ACROSS], ids=["desk", "phone", "phone across"])
+def test_nothing_lies_over_what_one_needs(open_console: Callable[..., Screen], running: Running, size: tuple[int, int]) -> None:
+    holder = open_console("/?name=Anna")
+    holder.click("#lease-take")
+    holder.waits_for("#lease-chip", "yours")
+    screen = open_console(size=size)
+    running.robot.says("late", "warning")
+    screen.page.wait_for_selector("#events-count")
+    screen.click("#tab-drive")
+    screen.click("#drive-arm")
+    screen.waits_for("#toast", "held by console Anna")
+    assert screen.page.locator("#drive-arm").evaluate(UPPERMOST), "the toast does not lie over what was just pressed"
+    tabs, last = (screen.page.locator(name).bounding_box() for name in (".tabs", "#tab-signals"))
+    assert last["x"] + last["width"] <= tabs["x"] + tabs["width"] + 1, "every tab is in sight"
+    who = [screen.text(name) for name in ("#lease-chip", "#lease-who") if screen.page.is_visible(name)]
+    assert who == ["console Anna"], "who drives is told once, on any screen"
+    boxes = [screen.page.locator(name).bounding_box() for name in (".gauges", ".lease")]
+    assert any(boxes[0][at] + boxes[0][far] <= boxes[1][at] or boxes[1][at] + boxes[1][far] <= boxes[0][at] for at, far in (("x", "width"), ("y", "height")))
+    screen.click("#toast")
+    assert screen.page.is_hidden("#toast")
+
+
+@pytest.mark.parametrize("size", [PHONE, ACROSS], ids=["phone", "phone across"])
+@pytest.mark.parametrize("place", [(8.05, 3.04), (3.0, 12.0)], ids=["below", "above"])
+def test_the_sheet_of_a_goal_does_not_cover_it(open_console: Callable[..., Screen], size: tuple[int, int], place: tuple[float, float]) -> None:
+    screen = open_console(size=size)
+    screen.taps(*place)
+    screen.waits_for("#goal-place", "0")
+    box, map_box = (screen.page.locator(name).bounding_box() for name in ("#goal-sheet", "#map"))
+    _, y = screen.page.evaluate("([x, y]) => window.pluto.map.view.toScreen(x, y)", list(place))
+    assert not box["y"] <= map_box["y"] + y <= box["y"] + box["height"]
 
 
 @pytest.mark.parametrize("how", ["click", "space", "space in a button"])
@@ -165,6 +204,16 @@ def test_the_tree_follows_what_runs_and_can_be_folded(open_console: Callable[...
     assert screen.page.locator("#tree li").count() == 1
     screen.click("#tree li:first-child .fold")
     assert screen.page.locator("#tree li").count() == 3
+
+
+def test_the_nodes_of_a_paused_mission_do_not_run(open_console: Callable[..., Screen], running: Running) -> None:
+    robot = running.robot
+    robot.write("tree", m.TreeState(1.0, 7, (node("0", "GoTo", "go", 1, "RUNNING"),)))
+    robot.write("mission/state", m.MissionState(1.0, "patrol", 1, "paused", "operator-stop"))
+    screen = open_console()
+    screen.waits_for("#tree", "go", "paused")
+    robot.write("tree", m.TreeState(2.0, 1, (node("0", "MoveTo", "errand", 1, "RUNNING"),)))
+    screen.waits_for("#tree", "errand", "running")
 
 
 def test_a_large_tree_shows_the_running_branch(open_console: Callable[..., Screen], running: Running) -> None:
@@ -380,6 +429,21 @@ def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Calla
     assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
 
 
+def test_a_mission_that_goes_on_is_replaced_only_by_a_second_click(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "running"))
+    screen = open_console()
+    screen.waits_for("#mission-chip", "running")
+    screen.click("#tab-mission")
+    screen.page.select_option("#mission-choice", "trip2")
+    screen.click("#mission-start")
+    screen.waits_for("#mission-start", "End patrol, start trip2")
+    assert running.robot.did == []
+    screen.click("#mission-start")
+    while len(running.robot.did) < 3:
+        screen.page.wait_for_timeout(10)
+    assert [entry[1:3] for entry in running.robot.did] == [("load", "trip2"), ("pause", ""), ("start", "")]
+
+
 def test_a_mission_that_goes_on_needs_no_lease(open_console: Callable[..., Screen], running: Running) -> None:
     """Who sent the robot somewhere holds the lease; left open it would stop the mission when he closes the page."""
     running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "paused", "operator-stop"))
@@ -426,6 +490,7 @@ def test_parameters_are_set_all_or_none_and_go_back_unless_kept(open_console: Ca
     screen.waits_for("#params-note", "1 to set")
     screen.click("#params-set")
     screen.waits_for("#params-left", "goes back in")
+    screen.waits_for("#toast", "Set for 30 s")  # not what was refused before
     screen.click("#params-keep")
     screen.waits_for("#toast", "Parameters kept")
     changes = [entry[1:] for entry in running.robot.did if entry[0] == "params" and entry[1] != "get"]

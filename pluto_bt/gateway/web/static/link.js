@@ -11,7 +11,7 @@ export const socketAddress = () => `${location.protocol === "https:" ? "wss" : "
 
 /** What the buttons of this page do about a refusal, instead of what a program would have to send. */
 const CURES = {
-  "lease-held": (text) => `${text.split(/ for another|;/)[0]}. Take over takes it away.`,
+  "lease-held": (text) => `${text[0].toUpperCase()}${text.slice(1).split(/ for another|;/)[0]}. Take over takes it away.`,
   "read-only": (text) => `Your token does not allow that: ${text}. Ask who runs the robot for one that does.`,
 };
 

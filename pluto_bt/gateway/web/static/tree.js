@@ -3,7 +3,7 @@
 import { age, byId, make, say } from "./dom.js";
 
 const SIGNS = { IDLE: ["·", "idle"], RUNNING: ["▶", "running"], SUCCESS: ["✓", "success"], FAILURE: ["✕", "failure"], SKIPPED: ["↷", "skipped"] };
-const PAUSED = ["❚❚", "paused"], SAME_TICK_S = 0.05;
+const PAUSED = ["‖", "paused"], SAME_TICK_S = 0.05;
 const SMALL = 120, MOST_ROWS = 1500;
 
 export class Tree {
@@ -23,7 +23,7 @@ export class Tree {
   take({ fields, stamp_s }) {
     const nodes = fields.nodes ?? [];
     this.now_s = stamp_s;
-    const shape = nodes.map((node) => node.path).join("\n");
+    const shape = nodes.map(({ path, kind, name }) => `${path} ${kind} ${name}`).join("\n"); // an errand has the paths of a mission
     this.nodes = nodes;
     if (byId("panel-tree").hidden) {
       this.shape = "";
