@@ -96,9 +96,12 @@ def _person(view: View) -> Cause | None:
     word, text = trail.situation.hold
     if word:
         return _cause("operator", word, text, _since(view, "hold"))
-    if view.paused:
-        return _cause("operator", view.paused, f"the mission was paused: {view.paused}", _since(view, "mission"))
-    return None
+    if not view.paused or trail.situation.moves:  # whom somebody drives by hand, no pause keeps standing
+        return None
+    if view.paused == reasons.ESTOP:  # and is released: nothing holds the robot any more
+        text = "an emergency stop, released since, paused the mission"
+        return _cause("mission", view.paused, text, _since(view, "mission"), unblock=cure(reasons.OPERATOR_STOP))
+    return _cause("operator", view.paused, f"the mission was paused: {view.paused}", _since(view, "mission"))
 
 
 def _contract(view: View) -> Cause | None:
@@ -212,7 +215,8 @@ def _mission(view: View) -> Iterator[Cause]:
     state, reason = view.trail.situation.mission
     if state:
         text = f"mission {view.mission} {state}" if view.mission else f"the mission is {state}"
-        yield _cause("mission", reason or state, text, _since(view, "mission"))
+        is_over = reason == reasons.ESTOP and view.trail.situation.hold[0] != reasons.ESTOP
+        yield _cause("mission", reason or state, text, _since(view, "mission"), unblock=cure(reasons.OPERATOR_STOP) if is_over else "")
 
 
 def _cause(layer: str, code: str, text: str, since_s: float, age_s: float = 0.0, unblock: str = "") -> Cause:

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-DESK, PHONE = (1440, 900), (390, 844)
+DESK, PHONE, ACROSS = (1440, 900), (390, 844), (844, 390)
 
 
 @contextmanager

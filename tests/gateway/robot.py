@@ -106,7 +106,10 @@ class FakeRobot:
         if at_s is not None and at_s > self.time_s:
             raise RefusedError("out-of-range", f"known are 0.0 s to {self.time_s:.1f} s")
         bumper = Cause("sensor", "bumper", "front panel pressed", 4.0, 0.0, "back off")
-        return False, [bumper, Cause("mission", "paused", "mission patrol paused", 1.0)]
+        held = [] if self.latched is None else [Cause("operator", "estop", self.latched, 4.5)]
+        raw = self.values.get("ATRV2/Drive/Raw")
+        moves = raw is not None and isinstance(raw.value, m.ActuatorState) and any(raw.value.velocity)
+        return moves, [*held, bumper, Cause("mission", "paused", "mission patrol paused", 1.0)]
 
     def modules(self) -> m.ModulesState:
         return m.ModulesState(self.time_s, (m.ModuleState("base", "chain", "running", 3, 0, 0, 0.5),))

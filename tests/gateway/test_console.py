@@ -20,7 +20,7 @@ from pluto_bt.maps.load import load_world
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.modules.scenery import scenery
 
-from .browsers import PHONE, Screen, chromium
+from .browsers import ACROSS, PHONE, Screen, chromium
 from .conftest import Running
 
 EVIL = '<img src=x onerror="document.title=\'taken\'"><script>document.title="taken"</script>'
@@ -66,6 +66,12 @@ def open_console(browser: Any, running: Running) -> Iterator[Callable[..., Scree
     running.wait_until_nobody_is_there()
 
 
+UPPERMOST = """(button) => {
+  const { left, top, width, height } = button.getBoundingClientRect();
+  return document.elementFromPoint(left + width / 2, top + height / 2) === button;
+}"""
+
+
 def node(path: str, kind: str, name: str, depth: int, status: str = "IDLE", feedback: str = "") -> m.NodeState:
     return m.NodeState(path, kind, name, depth, status, feedback, 0.0)
 
@@ -83,6 +89,39 @@ def test_it_loads_without_a_complaint_and_shows_where_the_robot_is(
     assert box["y"] + box["height"] <= size[1] and box["width"] >= 200 and box["height"] >= 60, "STOP is always in sight, and large"
     assert screen.page.evaluate("document.documentElement.scrollWidth <= window.innerWidth")
     assert screen.complaints == []
+
+
+@pytest.mark.parametrize("size", [(1280, 800), PHONE, ACROSS], ids=["desk", "phone", "phone across"])
+def test_nothing_lies_over_what_one_needs(open_console: Callable[..., Screen], running: Running, size: tuple[int, int]) -> None:
+    holder = open_console("/?name=Anna")
+    holder.click("#lease-take")
+    holder.waits_for("#lease-chip", "yours")
+    screen = open_console(size=size)
+    running.robot.says("late", "warning")
+    screen.page.wait_for_selector("#events-count")
+    screen.click("#tab-drive")
+    screen.click("#drive-arm")
+    screen.waits_for("#toast", "held by console Anna")
+    assert screen.page.locator("#drive-arm").evaluate(UPPERMOST), "the toast does not lie over what was just pressed"
+    tabs, last = (screen.page.locator(name).bounding_box() for name in (".tabs", "#tab-signals"))
+    assert last["x"] + last["width"] <= tabs["x"] + tabs["width"] + 1, "every tab is in sight"
+    who = [screen.text(name) for name in ("#lease-chip", "#lease-who") if screen.page.is_visible(name)]
+    assert who == ["console Anna"], "who drives is told once, on any screen"
+    boxes = [screen.page.locator(name).bounding_box() for name in (".gauges", ".lease")]
+    assert any(boxes[0][at] + boxes[0][far] <= boxes[1][at] or boxes[1][at] + boxes[1][far] <= boxes[0][at] for at, far in (("x", "width"), ("y", "height")))
+    screen.click("#toast")
+    assert screen.page.is_hidden("#toast")
+
+
+@pytest.mark.parametrize("size", [PHONE, ACROSS], ids=["phone", "phone across"])
+@pytest.mark.parametrize("place", [(8.05, 3.04), (3.0, 12.0)], ids=["below", "above"])
+def test_the_sheet_of_a_goal_does_not_cover_it(open_console: Callable[..., Screen], size: tuple[int, int], place: tuple[float, float]) -> None:
+    screen = open_console(size=size)
+    screen.taps(*place)
+    screen.waits_for("#goal-place", "0")
+    box, map_box = (screen.page.locator(name).bounding_box() for name in ("#goal-sheet", "#map"))
+    _, y = screen.page.evaluate("([x, y]) => window.pluto.map.view.toScreen(x, y)", list(place))
+    assert not box["y"] <= map_box["y"] + y <= box["y"] + box["height"]
 
 
 @pytest.mark.parametrize("how", ["click", "space", "space in a button"])
@@ -103,6 +142,21 @@ def test_stop_says_when_zero_was_commanded(open_console: Callable[..., Screen], 
     robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0))
     screen.waits_for("#stop-note", "standing")
     assert robot.did == [("stop", "console")], "once, without a lease, and the button was not pressed by the space bar"
+
+
+def test_the_stop_button_takes_its_word_back_when_the_robot_drives_again(open_console: Callable[..., Screen], running: Running) -> None:
+    robot = running.robot
+    screen = open_console()
+    screen.click("#stop")
+    screen.waits_for("#stop-note", "heard")
+    assert "zero" not in screen.text("#stop-note"), "nobody has told what the base was commanded"
+    for moving in ("Command", "Raw"):
+        robot.write("ATRV2/Drive/Command", m.ActuatorState(0.0, 0))
+        robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0))
+        screen.waits_for("#stop-note", "standing")
+        robot.write(f"ATRV2/Drive/{moving}", m.ActuatorState(0.0, 0, velocity=(0.45, 0.0)))
+        screen.waits_for("#stop-note", "space bar")
+        screen.click("#stop")
 
 
 def test_a_space_in_a_text_is_a_space(open_console: Callable[..., Screen], running: Running) -> None:
@@ -152,6 +206,16 @@ def test_the_tree_follows_what_runs_and_can_be_folded(open_console: Callable[...
     assert screen.page.locator("#tree li").count() == 3
 
 
+def test_the_nodes_of_a_paused_mission_do_not_run(open_console: Callable[..., Screen], running: Running) -> None:
+    robot = running.robot
+    robot.write("tree", m.TreeState(1.0, 7, (node("0", "GoTo", "go", 1, "RUNNING"),)))
+    robot.write("mission/state", m.MissionState(1.0, "patrol", 1, "paused", "operator-stop"))
+    screen = open_console()
+    screen.waits_for("#tree", "go", "paused")
+    robot.write("tree", m.TreeState(2.0, 1, (node("0", "MoveTo", "errand", 1, "RUNNING"),)))
+    screen.waits_for("#tree", "errand", "running")
+
+
 def test_a_large_tree_shows_the_running_branch(open_console: Callable[..., Screen], running: Running) -> None:
     branches = [[node(f"0/{i}", "Sequence", f"part {i}", 2, "RUNNING" if i == 150 else "IDLE"),
                  node(f"0/{i}/0", "GoTo", f"leaf {i}", 3, "RUNNING" if i == 150 else "IDLE")] for i in range(300)]  # fmt: skip
@@ -185,11 +249,14 @@ def test_two_browsers_and_one_lease(open_console: Callable[..., Screen], running
     ben.waits_for("#lease-take", "Take over")
     ben.taps(6.0, 3.5)
     ben.waits_for("#goal-note", "console Anna holds the lease")
-    ben.click("#goal-goto")
-    ben.waits_for("#toast", "held by console Anna")
+    assert ben.page.is_disabled("#goal-goto")
+    ben.click("#tab-drive")
+    ben.click("#drive-arm")
+    ben.waits_for("#toast", "held by console Anna. Take over takes it away")
     assert running.robot.did == []
     ben.click("#lease-take")
     ben.waits_for("#lease-chip", "yours")
+    assert ben.page.is_enabled("#goal-goto")
     anna.waits_for("#toast", "console Ben took the lease")
     ben.close()
     anna.waits_for("#lease-chip", "free")
@@ -218,18 +285,28 @@ def test_driving_begins_with_the_velocity_in_force_and_letting_go_is_zero(open_c
 
 
 def test_the_emergency_stop_holds_until_it_is_released(open_console: Callable[..., Screen], running: Running) -> None:
-    screen = open_console()
+    screen = open_console("/?name=Anna")
     screen.click("#estop")
-    running.robot.says("emergency stop: console", "error", "estop")
-    screen.waits_for("#estop-note", "latched")
-    screen.page.wait_for_selector("#release")
+    screen.waits_for("#estop-note", "latched")  # a state: this robot tells of it in no event
+    screen.waits_for("#causes", "console Anna pressed E-STOP")
     other = open_console()
     other.waits_for("#estop-note", "latched")
     screen.click("#release")
-    running.robot.says("emergency stop released", "info", "estop-released")
     for one in (screen, other):
         one.page.wait_for_selector("#release", state="hidden")
     assert [entry[0] for entry in running.robot.did] == ["estop", "release"]
+
+
+def test_the_verdict_goes_with_the_wheels(open_console: Callable[..., Screen], running: Running) -> None:
+    """Asked anew as soon as they do something else, not at the next turn."""
+    robot = running.robot
+    robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0, velocity=(0.4, 0.0)))
+    screen = open_console()
+    screen.waits_for("#verdict", "Moving")
+    screen.page.evaluate("() => { for (let i = 0; i < 10000; i++) clearInterval(i); }")
+    while screen.text("#verdict") != "Standing":
+        robot.write("ATRV2/Drive/Raw", m.ActuatorState(0.0, 0))
+        screen.page.wait_for_timeout(20)
 
 
 def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Screen], running: Running) -> None:
@@ -241,6 +318,25 @@ def test_without_a_link_it_says_so_and_comes_back(open_console: Callable[..., Sc
     screen.waits_for("#verdict", "Unknown")
     screen.waits_for("#link", "ms")
     screen.page.wait_for_selector("#no-link", state="hidden")
+
+
+def test_a_connection_on_which_nobody_says_hello_is_given_up(browser: Any, running: Running) -> None:
+    """Something between the page and the robot takes the first connection, and never says a word."""
+    tried: list[Any] = []
+
+    def meet(socket: Any) -> None:
+        tried.append(socket)
+        if len(tried) > 1:
+            socket.connect_to_server()
+
+    context = browser.new_context()
+    page = context.new_page()
+    page.route_web_socket("**/socket", meet)
+    page.goto(running.url)
+    page.wait_for_function("() => document.querySelector('#link').textContent.includes('ms')", timeout=20_000)
+    assert len(tried) == 2
+    context.close()
+    running.wait_until_nobody_is_there()
 
 
 def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Callable[..., Screen], running: Running) -> None:
@@ -335,6 +431,21 @@ def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Calla
     assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
 
 
+def test_a_mission_that_goes_on_is_replaced_only_by_a_second_click(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "running"))
+    screen = open_console()
+    screen.waits_for("#mission-chip", "running")
+    screen.click("#tab-mission")
+    screen.page.select_option("#mission-choice", "trip2")
+    screen.click("#mission-start")
+    screen.waits_for("#mission-start", "End patrol, start trip2")
+    assert running.robot.did == []
+    screen.click("#mission-start")
+    while len(running.robot.did) < 3:
+        screen.page.wait_for_timeout(10)
+    assert [entry[1:3] for entry in running.robot.did] == [("load", "trip2"), ("pause", ""), ("start", "")]
+
+
 def test_a_mission_that_goes_on_needs_no_lease(open_console: Callable[..., Screen], running: Running) -> None:
     """Who sent the robot somewhere holds the lease; left open it would stop the mission when he closes the page."""
     running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "paused", "operator-stop"))
@@ -355,12 +466,17 @@ def test_with_people_known_by_tokens_the_page_asks_for_one(browser: Any) -> None
     one.pump()
     screen = Screen(browser, one.url)
     try:
-        for token in ("sesam", "sesame"):
-            screen.page.fill("#token", token)
-            screen.page.keyboard.press("Enter")
+        screen.click("#stop")
+        screen.waits_for("#stop-note", "heard")
+        assert [entry[0] for entry in one.robot.did] == ["stop"], "a stop is heard from anyone, before he has shown who he is"
+        screen.page.fill("#token", "sesam")
+        screen.page.keyboard.press("Enter")
+        screen.waits_for("#token-note", "knows nobody with that token")
+        screen.page.fill("#token", "sesame")
+        screen.page.keyboard.press("Enter")
         screen.waits_for("#link", "ms")
         screen.click("#stop")
-        screen.waits_for("#stop-note", "zero commanded")
+        screen.waits_for("#stop-note", "heard")
     finally:
         screen.close()
         one.end()
@@ -376,6 +492,7 @@ def test_parameters_are_set_all_or_none_and_go_back_unless_kept(open_console: Ca
     screen.waits_for("#params-note", "1 to set")
     screen.click("#params-set")
     screen.waits_for("#params-left", "goes back in")
+    screen.waits_for("#toast", "Set for 30 s")  # not what was refused before
     screen.click("#params-keep")
     screen.waits_for("#toast", "Parameters kept")
     changes = [entry[1:] for entry in running.robot.did if entry[0] == "params" and entry[1] != "get"]

@@ -95,6 +95,7 @@ def test_a_recording_is_looked_through_with_a_slider(browser: Any, scenario: Pla
         screen.waits_for("#pose-x", "2.0")
         for selector in ("#stop", "#lease-take", "#tab-drive", "#tab-mission", "#goal-sheet"):
             assert screen.page.is_hidden(selector), f"{selector} commands, and nobody hears a command here"
+        screen.waits_for("#clock", "0:00.0")
         for t_s in (6.0, 3.0):  # forward, and back
             screen.page.fill("#time", str(t_s))
             screen.waits_for("#clock", f"0:0{t_s:.1f}")
@@ -115,6 +116,7 @@ def test_a_recording_is_looked_through_with_a_slider(browser: Any, scenario: Pla
         screen.waits_for("#causes", "fatal error")
         screen.page.keyboard.press("End")
         screen.waits_for("#mission-chip", "succeeded")
+        assert "old" in screen.text("#speed") or screen.text("#speed").startswith("0.00"), "a thinned speed is not that of the end"
         screen.click("#tab-events")
         screen.waits_for("#events", "gyro bias")
         assert screen.complaints == []

@@ -3,13 +3,14 @@
 import { age, byId, clock, degrees, say, show } from "./dom.js";
 import { missionReason, missionWords } from "./panels.js";
 
+const FAST = new Set(["ATRV2/Drive/Raw"]), MOMENT_S = 0.3;
 const SILENT_MS = 1200; // the answer to a ping comes each second, if nothing else does
 
 export class Bar {
   constructor(store, robot, link) {
-    Object.assign(this, { store, robot, link, clock_s: 0, clock_ms: performance.now() });
+    Object.assign(this, { store, robot, link, clock_s: null, clock_ms: performance.now() });
     link?.on("clock", (time_s) => this.tick(time_s));
-    store.on("*", ({ stamp_s }) => stamp_s > this.now_s && this.tick(stamp_s));
+    store.on("*", ({ stamp_s }) => (this.clock_s === null || stamp_s > this.now_s) && this.tick(stamp_s));
     setInterval(() => this.refresh(), 200);
   }
 
@@ -25,10 +26,10 @@ export class Bar {
   refresh() {
     if (document.hidden) return;
     const { store } = this;
-    say(byId("clock"), this.clock_s ? clock(this.now_s) : "–");
+    say(byId("clock"), this.clock_s === null ? "–" : clock(this.now_s));
     this.gauge("speed", "ATRV2/Drive/Raw", ({ velocity }) => `${zero(velocity[0].toFixed(2))} m/s`);
     const turn = store.fields("ATRV2/Drive/Raw")?.velocity[1];
-    say(byId("turn"), turn === undefined || store.isStale("ATRV2/Drive/Raw") ? "" : `${zero((turn * 57.3).toFixed(0))} °/s`);
+    say(byId("turn"), turn === undefined || this.isOld("ATRV2/Drive/Raw") ? "" : `${zero((turn * 57.3).toFixed(0))} °/s`);
     this.gauge("battery", "ATRV2/Battery", ({ voltage_v }) => this.battery(voltage_v));
     const mission = store.fields("mission/state");
     say(byId("mission-chip"), mission ? missionWords(mission) : "–");
@@ -40,9 +41,15 @@ export class Bar {
 
   /** A figure of a topic in words, with its age if that is too high. */
   gauge(id, topic, words) {
-    const fields = this.store.fields(topic), isOld = this.store.isStale(topic), text = fields ? words(fields) : "–";
+    const fields = this.store.fields(topic), isOld = this.isOld(topic), text = fields ? words(fields) : "–";
     say(byId(id), isOld && fields ? `${text} · ${age(this.store.age_s(topic))} old` : text);
     byId(`gauge-${id}`).classList.toggle("old", isOld);
+  }
+
+  /** Stale; in a recording, where most topics are thinned, also what was true so long before the moment shown that it may not be true then. */
+  isOld(topic) {
+    const isFromBefore = this.link === null && FAST.has(topic) && this.store.age_s(topic) > MOMENT_S;
+    return isFromBefore || this.store.isStale(topic);
   }
 
   battery(volts) {

@@ -47,6 +47,7 @@ export function toast(text, isGood = false) {
   say(element, text);
   element.classList.toggle("good", isGood);
   show(element, true);
+  element.onclick = () => show(element, false);
   clearTimeout(hiding);
   hiding = setTimeout(() => show(element, false), isGood ? 3000 : 8000);
 }

@@ -1,22 +1,35 @@
-// STOP: heard from anyone at any time. What the button says is what is known: sent, zero commanded, standing.
+// STOP: heard from anyone at any time. What the button says is what is known: sent, heard, zero commanded, standing; and it is taken back
+// as soon as it is no longer true.
 
+import { askOnce } from "./doorbell.js";
 import { byId, say, show, toast } from "./dom.js";
 
 const STANDS_MPS = 0.01, STANDS_RADPS = 0.01, TOLD_MS = 6000;
 const AT_REST = matchMedia("(pointer: coarse)").matches ? "for anyone, at any time" : "space bar";
 
 export class Halt {
-  constructor(link, store, lease) {
-    Object.assign(this, { link, store, lease, begun_ms: null, phase: "" });
+  /** From the first moment on: a stop needs no token, no scenery and no link that stands. */
+  constructor() {
+    Object.assign(this, { link: null, store: null, lease: null, why: null, begun_ms: null, phase: "" });
     byId("stop").onclick = () => this.stop();
     byId("estop").onclick = () => this.estop();
     byId("release").onclick = () => this.release();
+    window.addEventListener("keydown", (event) => this.key(event), { capture: true });
+    this.tell("");
+  }
+
+  /** From here on the link carries the orders, and what it brings is told. That the robot is latched is known from the answer to `why`. */
+  join(link, store, lease, why) {
+    Object.assign(this, { link, store, lease, why });
+    why.isLatched = (isHeld) => this.held(isHeld);
     store.on("ATRV2/Drive/Command", () => this.look());
     store.on("ATRV2/Drive/Raw", () => this.look());
-    link.on("up", () => this.tell(""));
-    link.on("down", () => this.tell("no link: use the robot's own switch", "bad"));
-    link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") this.held(code === "estop"); });
-    window.addEventListener("keydown", (event) => this.key(event), { capture: true });
+    link.on("up", () => this.takeBack());
+    link.on("down", () => {
+      this.phase = "";
+      this.tell("no link: use the robot's own switch", "bad");
+    });
+    link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") why.look(); });
   }
 
   /** The space bar, wherever one is; only where text is typed it is a space. */
@@ -32,7 +45,7 @@ export class Halt {
   }
 
   estop() {
-    this.order("estop", { reason: "console" });
+    this.order("estop", { reason: `${this.link?.name ?? "somebody at the console"} pressed E-STOP` });
   }
 
   async order(tag, given) {
@@ -40,29 +53,40 @@ export class Halt {
     this.phase = "sent";
     this.tell("sent …", "busy");
     try {
-      await this.link.ask(tag, given);
+      await (this.link?.isUp ? this.link.ask(tag, given) : askOnce(tag, given));
     } catch (error) {
       this.phase = "";
       this.tell(error.message, "bad");
       return;
     }
-    this.phase = "obeyed";
-    this.look();
+    this.reached("heard", "sent, and heard", "busy");
+    if (this.store) this.look();
   }
 
-  /** The newest command that the base took, and what its wheels do. */
+  /** The newest command that the base took, and what its wheels do; what is not known is not said. */
   look() {
-    if (this.phase === "obeyed" && isZero(this.store.fields("ATRV2/Drive/Command")?.velocity ?? [0, 0], 0, 0)) {
-      this.phase = "zero";
+    const commanded = this.store.fields("ATRV2/Drive/Command")?.velocity;
+    const driven = this.store.isStale("ATRV2/Drive/Raw") ? undefined : this.store.fields("ATRV2/Drive/Raw").velocity;
+    if (this.phase === "heard" && isZero(commanded, 0, 0)) {
       byId("stop").dataset.zeroMs = String(Math.round(performance.now() - this.begun_ms));
-      this.tell(`zero commanded in ${byId("stop").dataset.zeroMs} ms`, "good");
-    }
-    if (this.phase === "zero" && isZero(this.store.fields("ATRV2/Drive/Raw")?.velocity ?? [1, 1], STANDS_MPS, STANDS_RADPS)) {
-      this.phase = "";
-      this.tell(`standing · zero in ${byId("stop").dataset.zeroMs} ms`, "good");
-      clearTimeout(this.timer);
-      this.timer = setTimeout(() => !this.phase && this.link.isUp && this.tell(""), TOLD_MS);
-    }
+      this.reached("zero", `zero commanded in ${byId("stop").dataset.zeroMs} ms`);
+    } else if (["zero", "standing"].includes(this.phase) && !isZero(commanded, 0, 0)) this.takeBack();
+    if (this.phase === "zero" && isZero(driven, STANDS_MPS, STANDS_RADPS)) {
+      this.reached("standing", `standing · zero in ${byId("stop").dataset.zeroMs} ms`);
+    } else if (this.phase === "standing" && !isZero(driven, STANDS_MPS, STANDS_RADPS)) this.takeBack();
+  }
+
+  /** So far the order has come; told for a while. */
+  reached(phase, text, mood = "good") {
+    this.phase = phase;
+    this.tell(text, mood);
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.phase === phase && this.takeBack(), TOLD_MS);
+  }
+
+  takeBack() {
+    this.phase = "";
+    this.tell("");
   }
 
   tell(text, mood = "") {
@@ -81,7 +105,7 @@ export class Halt {
     try {
       if (!this.lease.isMine) await this.lease.acquire();
       await this.link.ask("release", { what: "estop" });
-      this.held(false);
+      this.why.look();
       toast("Released. Nothing moves until it is commanded.", true);
     } catch (error) {
       toast(error.message);
@@ -89,7 +113,8 @@ export class Halt {
   }
 }
 
-const isZero = (velocity, speed, turn) => Math.abs(velocity[0]) <= speed && Math.abs(velocity[1]) <= turn;
+/** False for a velocity that is not known. */
+const isZero = (velocity, speed, turn) => velocity !== undefined && Math.abs(velocity[0]) <= speed && Math.abs(velocity[1]) <= turn;
 
 export function isTyping(target) {
   return target instanceof HTMLElement && (target.isContentEditable || target.tagName === "TEXTAREA"

@@ -21,16 +21,17 @@ export class Lease {
   }
 
   set(isMine, holder) {
-    const wasMine = this.isMine;
+    const wasMine = this.isMine, isNews = wasMine !== isMine || this.holder !== holder;
     Object.assign(this, { isMine, holder });
     const chip = byId("lease-chip");
     say(chip, isMine ? "yours" : holder || (this.link.isUp ? "free" : "–"));
+    say(byId("lease-who"), isMine ? "yours" : holder);
     byId("gauge-lease").dataset.state = isMine ? "mine" : holder ? "held" : "free";
     say(byId("lease-take"), holder && !isMine ? "Take over" : "Take lease");
     show(byId("lease-take"), !isMine);
     show(byId("lease-give"), isMine);
     if (wasMine && !isMine && holder) toast(`${holder} took the lease`);
-    if (wasMine !== isMine) for (const listener of this.listeners) listener(isMine);
+    if (isNews) for (const listener of this.listeners) listener(isMine);
   }
 
   heard({ mine, holder }) {

@@ -7,11 +7,25 @@ const LOST_MS = 2500; // no byte for so long: what is shown is old
 const BACK_OFF_MS = [250, 500, 1000, 2000];
 const ANSWER_MS = 5000, FAULTS_MS = 30;
 
+export const socketAddress = () => `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`;
+
+/** What the buttons of this page do about a refusal, instead of what a program would have to send. */
+const CURES = {
+  "lease-held": (text) => `${text[0].toUpperCase()}${text.slice(1).split(/ for another|;/)[0]}. Take over takes it away.`,
+  "read-only": (text) => `Your token does not allow that: ${text}. Ask who runs the robot for one that does.`,
+};
+
 export class Refused extends Error {
-  /** `faults`: everything that was said against the request. */
+  /** `faults`: everything that was said against the request. The message is for a person at this page. */
   constructor(faults) {
-    super(faults.map(({ line, col, text, code }) => (line ? `${line}:${col} ` : "") + (text || code)).join("\n"));
+    super(faults.map(({ text, code }) => CURES[code]?.(text) ?? (text || code)).join("\n"));
     this.code = faults[0].code;
+    this.faults = faults;
+  }
+
+  /** Each with the line and column of the document that it was found in. */
+  get lines() {
+    return this.faults.map(({ line, col, text, code }) => (line ? `${line}:${col} ` : "") + (text || code));
   }
 }
 
@@ -36,7 +50,7 @@ export class Link {
   }
 
   connect() {
-    const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/socket`);
+    const socket = new WebSocket(socketAddress());
     this.socket = socket;
     this.opened_ms = performance.now();
     // The session is this connection's own: a lost one ends its lease, and nothing is taken up again behind the operator's back.
@@ -47,10 +61,13 @@ export class Link {
   }
 
   async greet() {
+    const { socket } = this;
     try {
       await this.ask("hello", { version: "1.0", name: this.name, session: this.session, token: this.token || undefined });
     } catch (error) {
       if (error.code === "unauthorised") this.tell("unauthorised", error);
+      socket.close(); // a connection that is not answered would stay open, and no other one be tried
+      this.closed(socket);
       return;
     }
     this.isUp = true;

@@ -25,6 +25,7 @@ const WISHES = [ // topic, at most so often a second, only changes
 const TOO_WIDE_M = 120; // a map so wide begins at the robot
 
 async function begin() {
+  const halt = new Halt();
   const { scenery, token } = await fetchScenery("");
   const { robot, world } = scenery;
   document.title = `${robot.name} · ${scenery.mode === "box" ? "black box" : "console"}`;
@@ -35,7 +36,7 @@ async function begin() {
   tabs.onOpen("tree", () => tree.woken());
   tabs.onOpen("events", () => events.count(0));
   new Signals(store);
-  const parts = { scenery, store, tabs, tree, events, token };
+  const parts = { scenery, store, tabs, tree, events, token, halt };
   parts.map = scenery.mode === "box" ? showBox(parts) : showRobot(parts);
   setUpMap(parts);
   window.pluto = { map: parts.map, store }; // for who looks into the page by hand, and for its tests
@@ -43,7 +44,7 @@ async function begin() {
   parts.map.isDirty = true;
 }
 
-function showRobot({ scenery, store, tabs, tree, events, token }) {
+function showRobot({ scenery, store, tabs, tree, events, token, halt }) {
   const link = new Link(store, WISHES, operator());
   link.token = token;
   link.on("unauthorised", (error) => say(byId("no-link"), error.message));
@@ -52,7 +53,8 @@ function showRobot({ scenery, store, tabs, tree, events, token }) {
   const lease = new Lease(link), orders = new Orders(link, store, lease), bar = new Bar(store, scenery.robot, link), why = new Why(link);
   Object.defineProperty(why, "now_s", { get: () => bar.now_s });
   tree.clock = () => bar.now_s;
-  new Halt(link, store, lease);
+  why.watch(store);
+  halt.join(link, store, lease, why);
   new Mission(link, store, lease);
   const modules = new Modules(link, store);
   tabs.onOpen("modules", () => modules.look());
@@ -70,7 +72,7 @@ function showBox({ scenery, store, tabs, tree, events }) {
   const modules = new Modules(null, store);
   tabs.onOpen("modules", () => modules.look());
   box.on("events", (list) => events.replace(list));
-  box.on("moment", () => { bar.clock_s = 0; });
+  box.on("moment", () => { bar.tick(box.wanted_s); });
   box.on("why", (answer) => why.show(answer.moving === "true", answer.rows, box.wanted_s));
   tree.clock = () => box.wanted_s;
   const map = new MapView(byId("map"), store, scenery, () => {});
@@ -111,15 +113,26 @@ function operator() {
 
 async function fetchScenery(token) {
   const answer = await fetch("/scenery.json", { headers: token ? { Authorization: `Bearer ${token}` } : {} });
-  if (answer.status === 401) return fetchScenery(await askToken());
+  if (answer.status === 401) return fetchScenery(await askToken(Boolean(token)));
   if (!answer.ok) throw new Error(await answer.text());
   return { scenery: await answer.json(), token };
 }
 
-function askToken() {
-  const dialog = byId("token-dialog");
-  dialog.showModal();
-  return new Promise((resolve) => { dialog.onclose = () => resolve(byId("token").value); });
+/** The dialog lets STOP be: it lies beside it, not under it. */
+function askToken(wasWrong) {
+  const dialog = byId("token-dialog"), field = byId("token"), others = document.querySelectorAll(".bar, .map, .side");
+  say(byId("token-note"), wasWrong ? "The robot knows nobody with that token. Look for a letter too many or too few, or ask who runs the robot." : "");
+  field.setAttribute("aria-invalid", String(wasWrong));
+  field.value = "";
+  for (const one of others) one.inert = true;
+  dialog.show();
+  field.focus();
+  return new Promise((resolve) => {
+    dialog.onclose = () => {
+      for (const one of others) one.inert = false;
+      resolve(field.value);
+    };
+  });
 }
 
 async function fetchPicture(name, token) {

@@ -4,6 +4,7 @@ import { AREAS, LABEL, MAJOR, MINOR, SOLID, WALL } from "./colours.js";
 
 const FONT = "500 11px system-ui, sans-serif";
 const AREA_FONT = "600 10px system-ui, sans-serif";
+const HALF_LINE_PX = 6;
 let hatching = null;
 
 export function drawGrid(context, view) {
@@ -102,6 +103,7 @@ function drawNames(context, view, world, withNames) {
   context.textBaseline = "middle";
   const { home } = world, isGoal = home && world.goals.some((goal) => Math.hypot(goal.x - home.x, goal.y - home.y) < 0.2);
   const places = [...world.goals.map((goal) => [goal, goal.id]), ...(home && !isGoal ? [[home, "home"]] : [])];
+  const taken = [];
   for (const [place, name] of places) {
     const [x, y] = view.toScreen(place.x, place.y);
     context.strokeStyle = LABEL;
@@ -119,14 +121,22 @@ function drawNames(context, view, world, withNames) {
       context.lineTo(x + 12 * Math.cos(place.theta), y - 12 * Math.sin(place.theta));
       context.stroke();
     }
-    if (withNames) label(context, name, x + 10, y, LABEL);
+    if (withNames) labelIfFree(context, taken, name, x + 10, y, LABEL);
   }
   if (!withNames) return;
   context.font = AREA_FONT;
   for (const area of world.areas) {
     const [px, py] = view.toScreen(...corner(area.points));
-    label(context, area.id.toUpperCase(), px + 8, py + 13, AREAS[area.kind] ?? LABEL);
+    labelIfFree(context, taken, area.id.toUpperCase(), px + 8, py + 13, AREAS[area.kind] ?? LABEL);
   }
+}
+
+/** A name, unless it would lie over one that was drawn before; nearer there is room for both. */
+function labelIfFree(context, taken, text, x, y, colour) {
+  const box = [x - 2, y - HALF_LINE_PX, x + context.measureText(text).width + 2, y + HALF_LINE_PX];
+  if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) return;
+  taken.push(box);
+  label(context, text, x, y, colour);
 }
 
 function label(context, text, x, y, colour) {

@@ -69,6 +69,7 @@ export class GoalSheet {
     byId("goal-cancel").onclick = () => this.close();
     show(byId("goal-moveto"), robot.laser_max_m !== null);
     show(byId("goal-navigate"), robot.laser_max_m !== null);
+    orders.lease.onChange(() => this.place && this.note());
     window.addEventListener("keydown", (event) => event.key === "Escape" && this.close());
   }
 
@@ -79,15 +80,16 @@ export class GoalSheet {
     say(byId("goal-place"), goal ? `${goal.id}  (${x.toFixed(2)}, ${y.toFixed(2)})` : `${x.toFixed(2)}, ${y.toFixed(2)}`);
     say(byId("goal-far"), pose ? `${metres(Math.hypot(x - pose[0], y - pose[1]))} away` : "");
     this.note();
-    const height = this.map.view.height, [, robotY] = pose ? this.map.view.toScreen(pose[0], pose[1]) : [0, 0];
-    byId("goal-sheet").classList.toggle("above", Math.max(robotY, this.map.view.toScreen(x, y)[1]) > height - 210);
     show(byId("goal-sheet"), true);
+    byId("goal-sheet").classList.toggle("above", this.map.view.toScreen(x, y)[1] > this.map.view.height / 2); // never over the place itself
     byId("goal-goto").focus({ preventScroll: true });
   }
 
   note() {
     const { holder, isMine } = this.orders.lease;
-    say(byId("goal-note"), holder && !isMine ? `${holder} holds the lease: take it over first` : this.orders.consequences());
+    const isForeign = Boolean(holder) && !isMine;
+    say(byId("goal-note"), isForeign ? `${holder} holds the lease: Take over, above, comes first` : this.orders.consequences());
+    for (const name of ["goto", "moveto", "navigate"]) byId(`goal-${name}`).disabled = isForeign;
   }
 
   go(node, words) {

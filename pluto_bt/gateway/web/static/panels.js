@@ -3,6 +3,7 @@
 import { age, byId, clock, make, say, show, toast } from "./dom.js";
 
 const EVENTS_KEPT = 300;
+const ASKED_MS = 6000; // so long a button waits for the click that confirms
 const LEVELS = { info: ["·", "info"], warning: ["▲", "warning"], error: ["✕", "error"] };
 const MISSION_SIGNS = { idle: "○", running: "▶", paused: "❚❚", stopping: "■", succeeded: "✓", failed: "✕", aborted: "■" };
 
@@ -56,7 +57,8 @@ export class Mission {
     Object.assign(this, { link, store, lease });
     store.on("mission/state", ({ fields }) => this.take(fields));
     for (const button of byId("mission-ops").children) button.onclick = () => this.order({ op: button.dataset.op });
-    byId("mission-start").onclick = () => this.start(byId("mission-choice").value);
+    byId("mission-start").onclick = () => this.begin(byId("mission-choice").value);
+    byId("mission-choice").onchange = () => this.ask("");
     link.on("up", () => this.list());
   }
 
@@ -84,12 +86,30 @@ export class Mission {
     }
   }
 
+  /** One that goes on is replaced only by a second click. */
+  begin(name) {
+    const { state, name: running } = this.store.fields("mission/state") ?? {};
+    if (["running", "paused", "stopping"].includes(state) && this.asked !== name) this.ask(name, `End ${running}, start ${name}`);
+    else {
+      this.ask("");
+      this.start(name);
+    }
+  }
+
+  ask(name, words = "Load and start") {
+    this.asked = name;
+    say(byId("mission-start"), words);
+    byId("mission-start").classList.toggle("danger", Boolean(name));
+    clearTimeout(this.asking);
+    if (name) this.asking = setTimeout(() => this.ask(""), ASKED_MS);
+  }
+
   async start(name) {
     byId("mission-faults").replaceChildren();
     try {
       await this.link.ask("mission", { op: "load", name });
     } catch (error) {
-      byId("mission-faults").replaceChildren(...error.message.split("\n").filter((line) => line.trim()).map((line) => make("li", {}, line)));
+      byId("mission-faults").replaceChildren(...error.lines.flatMap((text) => text.split("\n")).filter((line) => line.trim()).map((line) => make("li", {}, line)));
       return;
     }
     const isRunning = this.store.fields("mission/state")?.state === "running";

@@ -77,6 +77,7 @@ export class Params {
       if (answer.tag === "params" && answer.rows.length) this.shown(answer);
       else await this.load();
       this.until_ms = performance.now() + CONFIRM_S * 1000;
+      toast(`Set for ${CONFIRM_S} s: keep it, or it goes back.`, true); // in the place of what was refused before
       this.countDown();
     } catch (error) {
       toast(error.message);

@@ -3,12 +3,14 @@
 import { age, byId, make, say } from "./dom.js";
 
 const SIGNS = { IDLE: ["·", "idle"], RUNNING: ["▶", "running"], SUCCESS: ["✓", "success"], FAILURE: ["✕", "failure"], SKIPPED: ["↷", "skipped"] };
+const PAUSED = ["‖", "paused"], SAME_TICK_S = 0.05;
 const SMALL = 120, MOST_ROWS = 1500;
 
 export class Tree {
   constructor(store) {
     Object.assign(this, { store, rows: [], shape: "", opened: new Map(), all: false, now_s: 0 });
     store.on("tree", (value) => this.take(value));
+    store.on("mission/state", () => this.nodes && !byId("panel-tree").hidden && this.refresh());
     setInterval(() => this.nodes && !byId("panel-tree").hidden && !document.hidden && this.refresh(), 500);
     byId("tree-all").onclick = () => {
       this.all = !this.all;
@@ -21,7 +23,7 @@ export class Tree {
   take({ fields, stamp_s }) {
     const nodes = fields.nodes ?? [];
     this.now_s = stamp_s;
-    const shape = nodes.map((node) => node.path).join("\n");
+    const shape = nodes.map(({ path, kind, name }) => `${path} ${kind} ${name}`).join("\n"); // an errand has the paths of a mission
     this.nodes = nodes;
     if (byId("panel-tree").hidden) {
       this.shape = "";
@@ -96,13 +98,20 @@ export class Tree {
     return this.clock?.() ?? this.now_s;
   }
 
+  /** The mission is paused and no errand has come since: its nodes wait, and run no more. */
+  isPaused() {
+    const mission = this.store.get("mission/state");
+    return mission?.fields.state === "paused" && (this.store.get("tree")?.stamp_s ?? 0) <= mission.stamp_s + SAME_TICK_S;
+  }
+
   refresh() {
-    const now_s = this.time_s();
+    const now_s = this.time_s(), isPaused = this.isPaused();
+    byId("tree").classList.toggle("paused", isPaused);
     for (const row of this.rows) {
       const node = this.nodes[row.i];
-      const [sign, word] = SIGNS[node.status] ?? ["?", node.status.toLowerCase()];
-      if (row.seen !== node.status) {
-        row.seen = node.status;
+      const [sign, word] = isPaused && node.status === "RUNNING" ? PAUSED : SIGNS[node.status] ?? ["?", node.status.toLowerCase()];
+      if (row.seen !== node.status + word) {
+        row.seen = node.status + word;
         row.element.dataset.status = node.status;
         say(row.sign, sign);
         say(row.word, word);

@@ -2,6 +2,7 @@
 
 const NEAREST = 400, FARTHEST = 2, FOLLOWED = 50; // pixels a metre
 const ABOVE_PX = 54; // taken by figures and buttons
+const SMALL_PX = 480, EDGE_PX = 12; // a map so low is shown whole, and they lie over it
 const TAP_PX = 8, TAP_MS = 600;
 
 export class View {
@@ -51,9 +52,10 @@ export class View {
     const [x0, y0, x1, y1] = box;
     this.box = box;
     this.x_m = (x0 + x1) / 2;
-    const free_px = Math.max(this.height - ABOVE_PX - this.below_px, 60);
+    const isSmall = this.height < SMALL_PX, above_px = isSmall ? EDGE_PX : ABOVE_PX, below_px = isSmall ? Math.max(EDGE_PX, this.below_px - 30) : this.below_px;
+    const free_px = Math.max(this.height - above_px - below_px, 60);
     this.scale = clamp(0.94 * Math.min(this.width / Math.max(x1 - x0, 1), free_px / Math.max(y1 - y0, 1)));
-    this.y_m = (y0 + y1) / 2 + (ABOVE_PX - this.below_px) / 2 / this.scale;
+    this.y_m = (y0 + y1) / 2 + (above_px - below_px) / 2 / this.scale;
     this.changed();
   }
 

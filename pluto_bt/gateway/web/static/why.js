@@ -3,12 +3,12 @@
 import { age, byId, make, say } from "./dom.js";
 
 const EVERY_MS = 500, OLD_MS = 2000; // an answer so old is none
+const STILL = 0.005; // m/s and rad/s: below, the robot stands
 
 export class Why {
   /** Without a link (a recording) it only shows what it is given. */
   constructor(link) {
-    this.link = link;
-    this.seen = "";
+    Object.assign(this, { link, seen: "", moves: null, isAsking: false, isLatched: () => {} });
     if (!link) return;
     this.told_ms = performance.now();
     setInterval(() => this.turn(), EVERY_MS);
@@ -27,20 +27,31 @@ export class Why {
   }
 
   look() {
+    this.isAsking = true;
     this.link.ask("why").then((answer) => {
       this.told_ms = performance.now();
+      this.isLatched(answer.rows.some(({ layer, code }) => layer === "operator" && code === "estop"));
       this.show(answer.moving === "true", answer.rows, this.now_s ?? 0);
-    }).catch(() => {});
+    }).catch(() => {}).finally(() => { this.isAsking = false; });
+  }
+
+  /** The wheels tell sooner than the next turn whether the verdict still holds. */
+  watch(store) {
+    store.on("ATRV2/Drive/Raw", ({ fields: { velocity } }) => {
+      const moves = velocity.some((share) => Math.abs(share) > STILL);
+      if (this.link.isUp && !this.isAsking && !document.hidden && moves !== this.moves) this.look();
+    });
   }
 
   unknown(text) {
     byId("verdict").dataset.state = "unknown";
     say(byId("verdict"), "Unknown");
     byId("causes").replaceChildren(make("li", {}, text));
-    this.seen = "";
+    Object.assign(this, { seen: "", moves: null });
   }
 
   show(isMoving, causes, now_s) {
+    this.moves = isMoving;
     byId("verdict").dataset.state = isMoving ? "moving" : "standing";
     say(byId("verdict"), isMoving ? "Moving" : "Standing");
     const seen = JSON.stringify(causes.map(({ layer, code, text, unblock }) => [layer, code, text, unblock]));
