@@ -59,7 +59,7 @@ class Client:
         """
         self.timeout_s = timeout_s
         self.dialogue = Dialogue(hello_of(name, session, token), timeout_s, new_ids(session))
-        self._keeper = Keeper(self.dialogue, f"{host}:{port}", backoff, connect or dialer(host, port, tls), clock, wait)
+        self._keeper = Keeper(self.dialogue, f"{host}:{port}", backoff, connect or dialer(host, port, tls), clock, wait, is_plain=tls is None)
         self._keeper.open()
         if (name or session or token) and not self._keeper.pump(lambda: self.dialogue.welcome is not None, self._keeper.clock() + timeout_s):
             self.close()

@@ -63,7 +63,7 @@ async def obey(robot: Robot, face: Face, words: Sequence[str], shell: str = "") 
     except FailedError as error:
         face.complain(str(error))
     except GatewayError as error:
-        face.complain(f"{error.code}: {_in_words(error.text)}")
+        face.complain(f"{error.code}: {_in_words(error.text)}{robot.advice(error)}")
     return FAILED
 
 
