@@ -116,7 +116,7 @@ class GatewayMissions:
             raise RefusedError("estopped", f"emergency stop ({hold.text}); release it first")
 
     def _load(self, text: str) -> Mission:
-        mission = self._system.options.load(text)
+        mission = self._system.options.load_checked(text)
         mission.attach(self._system.robot)
         return mission
 

@@ -126,6 +126,28 @@ def test_a_long_session_validates(tmp_path: Path) -> None:
     assert len({answer.get("topic") for answer in talk.heard if answer.tag == "value"}) > 20
 
 
+UNFIT = {"<GoTo/>": 'port "goal" of <GoTo> is missing', '<GoTo goal="{nix}"/>': 'nothing writes entry "nix"', "<RetryUntilSuccessful><AlwaysSuccess/>"
+         "</RetryUntilSuccessful>": "num_attempts"}  # fmt: skip
+
+
+def test_what_check_refuses_the_gateway_refuses_too_and_the_run_goes_on(tmp_path: Path) -> None:
+    """All this loads in BehaviorTree.CPP, and would raise at its first tick."""
+    says = {1.0: '<mission op="pause"/><lease op="acquire" ttl_s="60"/>', 2.5: '<run id="run" node="GoTo"/>', 4.0: '<mission op="resume"/>'}
+    for number, node in enumerate(UNFIT):
+        mission = f'<root BTCPP_format="4"><BehaviorTree ID="m">{node}</BehaviorTree></root>'
+        says[2.0 + 0.1 * number] = "".join(f'<mission id="{op}{number}" op="{op}">{mission}</mission>' for op in ("check", "load"))
+    model = '<TreeNodesModel><SubTree ID="m"><input_port name="to"/></SubTree></TreeNodesModel>'
+    inputs = f'<root BTCPP_format="4"><BehaviorTree ID="m"><GoTo goal="{{to}}"/></BehaviorTree>{model}</root>'
+    talk = Talk(tmp_path, {**says, 3.0: f'<mission id="inputs" op="load">{inputs}</mission><mission id="start" op="start"/>'}, x=3.0)
+    for number, text in enumerate(UNFIT.values()):
+        for (answer,) in (talk.told(f"check{number}"), talk.told(f"load{number}")):
+            assert answer.get("code") == "bad-mission" and text in answer.text and int(answer.get("col")) > 1
+    (refused,) = talk.told("run")
+    assert refused.get("code") == "bad-value" and 'port "goal" of <GoTo> is missing; expected goal="…": x;y, in m' in refused.text
+    assert 'input "to"' in talk.told("inputs")[0].text and talk.told("start")[0].get("code") == "wrong-state"
+    assert talk.result.result == "SUCCESS"
+
+
 def test_what_was_stopped_is_not_shown_as_running(tmp_path: Path) -> None:
     """An errand beside a paused mission is stopped: tree and why speak of the mission again, live and replayed; and everybody reads who did it."""
     asks = '<get id="tree{0}" topic="tree"/><why id="why{0}"/>'
