@@ -116,13 +116,15 @@ class Runner:
         contacts += [_contact(contact, "hit-by") for contact in simulator.hit_by]
         clearance_m = simulator.min_clearance_m
         activity = system.executive.core.mission
+        mission = self.mission if activity is None else activity.mission  # another one, if somebody has loaded that meanwhile
+        name = self.inputs.mission_path.name if mission is self.mission else Path(mission.origin.file or mission.name).name
         return RunResult(
             result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=self.loop.wall_time_s,
             ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
             hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
-            trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
-            seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
+            trace_sha256=system.trace.sha256(), leaves=_leaves(mission), blackboard=dict(mission.blackboard.items()), contacts=contacts,
+            seed=self.inputs.seed, mission=name, world=self.inputs.world.name, platform=self.inputs.robot.name,
             faults=[fault.as_json() for fault in self.inputs.warnings], contracts=[kept.as_json() for kept in system.executive.contracts],
         )  # fmt: skip
 
