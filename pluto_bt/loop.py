@@ -13,7 +13,7 @@ from pluto_bt.runtime.latch import OPERATOR_STOP
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
-from pluto_bt.skills import plan_map, wall_path
+from pluto_bt.skills import approach, obstacles, plan_map, wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
 from pluto_bt.trees.activity import PAUSED
@@ -35,6 +35,11 @@ def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
     system.scheduler.start()
     system.inboxes["motion"].post("mission", ActuatorState(0.0, 10 * Avoidance.BOTH + CommandType.GOTO, (1e3, 0.0), (0.3, 0.5)))
     system.scheduler.run_until(NS // 2)
+    system.simulator.warm()
+    if system.options.robot.devices.sonar is not None:
+        approach.warm()
+    if system.options.robot.devices.sonar is not None or system.options.robot.devices.laser is not None:
+        obstacles.warm()
     if with_jobs:
         system.robot.surroundings.warm()
         plan_map.warm()

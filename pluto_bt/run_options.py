@@ -15,6 +15,7 @@ from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.runtime.clock import StepClock
 from pluto_bt.trees import Mission, load_mission
+from pluto_bt.trees.checks import load_checked
 
 if TYPE_CHECKING:
     from pluto_bt.record.entries import Run
@@ -51,6 +52,7 @@ class Options:
     record: RecordRequest | None = None
     own_clock: StepClock | None = None
     load: Callable[..., Mission] = load_mission
+    load_checked: Callable[[str], Mission] = load_checked  # what somebody asks for while it runs
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
     on_compiling: Callable[[], None] = lambda: None  # told before the run, if kernels must be compiled first

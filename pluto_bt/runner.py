@@ -37,6 +37,7 @@ from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, 
 from pluto_bt.system import System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.activity import ABORTED, SUCCEEDED
+from pluto_bt.trees.checks import load_checked
 from pluto_bt.trees.journal import Journal
 
 USES_THE_MAP = (WristTour, FindPath, Planning, PathDriver)
@@ -115,13 +116,15 @@ class Runner:
         contacts += [_contact(contact, "hit-by") for contact in simulator.hit_by]
         clearance_m = simulator.min_clearance_m
         activity = system.executive.core.mission
+        mission = self.mission if activity is None else activity.mission  # another one, if somebody has loaded that meanwhile
+        name = self.inputs.mission_path.name if mission is self.mission else Path(mission.origin.file or mission.name).name
         return RunResult(
             result=result, reason=reason, text=text, sim_time_s=system.clock.now_ns() / NS, wall_time_s=self.loop.wall_time_s,
             ticks=0 if activity is None else activity.ticks, distance_m=simulator.distance_m, collisions=len(simulator.collisions),
             hit_by=len(simulator.hit_by), min_clearance_m=clearance_m if clearance_m < float("inf") else None, final_pose=simulator.pose,
             estimated_pose=None if believed is None else (believed.pose[0], believed.pose[1], math.remainder(believed.pose[3], math.tau)),
-            trace_sha256=system.trace.sha256(), leaves=_leaves(self.mission), blackboard=dict(self.mission.blackboard.items()), contacts=contacts,
-            seed=self.inputs.seed, mission=self.inputs.mission_path.name, world=self.inputs.world.name, platform=self.inputs.robot.name,
+            trace_sha256=system.trace.sha256(), leaves=_leaves(mission), blackboard=dict(mission.blackboard.items()), contacts=contacts,
+            seed=self.inputs.seed, mission=name, world=self.inputs.world.name, platform=self.inputs.robot.name,
             faults=[fault.as_json() for fault in self.inputs.warnings], contracts=[kept.as_json() for kept in system.executive.contracts],
         )  # fmt: skip
 
@@ -176,6 +179,9 @@ def make_runner(
     def load(text: str | Path, **more: Any) -> Mission:
         return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
 
+    def load_to_order(text: str) -> Mission:
+        return load_checked(text, nodes, own_clock or clock, topics=topics)
+
     mission = load(inputs.mission_path, **of_file)
     resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
     if resumption is not None:
@@ -191,8 +197,8 @@ def make_runner(
         max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
         gateway=parse_address(gateway) if gateway is not None else None, gateway_access=gateway_access,
         gateway_audit=Path(gateway_audit) if gateway_audit else default_path(), web=web_address(web) if web is not None else None,
-        groot=groot_address(groot) if groot is not None else None, ssh=ssh, load=load, on_event=on_event, on_progress=on_progress,
-        on_compiling=on_compiling,
+        groot=groot_address(groot) if groot is not None else None, ssh=ssh, load=load, load_checked=load_to_order,
+        on_event=on_event, on_progress=on_progress, on_compiling=on_compiling,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip
     runner = Runner(inputs, mission, clock, options)

@@ -134,6 +134,14 @@ class System:
 
         return is_owner
 
+    def running_above(self, link: str) -> list[str]:
+        """The links above this one that run, the highest first: they stop in this order."""
+        above, running = INBOXES[link], []
+        while above:
+            running += [above] if self.is_running(above) else []
+            above = INBOXES[above]
+        return running[::-1]
+
     def _trace_command(self, name: str) -> Callable[[], None]:
         newest = self.board.reader(name)
 

@@ -122,9 +122,17 @@ public final class Goto {
         }
     }
 
+    private static boolean isNumber(String word) {
+        try {
+            return Double.isFinite(Double.parseDouble(word));
+        } catch (NumberFormatException error) {
+            return false;
+        }
+    }
+
     public static void main(String[] words) {
-        if (words.length != 4) {
-            System.err.println("usage: java Goto.java HOST PORT X Y");
+        if (words.length != 4 || !isNumber(words[2]) || !isNumber(words[3])) {
+            System.err.println("usage: java Goto.java HOST PORT X Y, where X and Y are numbers, in metres");
             System.exit(2);
         }
         int code = 1;

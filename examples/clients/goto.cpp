@@ -2,6 +2,7 @@
 // The protocol of the gateway with POSIX sockets alone. One message a line comes from the robot, so that a line is all there is to parse.
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -175,11 +176,19 @@ int drive(Robot& robot, const std::string& goal) {
     }
 }
 
+/// Metres; nothing if the word is no number.
+std::optional<double> metres(const char* word) {
+    char* end = nullptr;
+    const double value = std::strtod(word, &end);
+    return end == word || *end != '\0' || !std::isfinite(value) ? std::nullopt : std::optional(value);
+}
+
 }  // namespace
 
 int main(int count, char** words) {
-    if (count != 5) {
-        std::cerr << "usage: " << words[0] << " HOST PORT X Y" << std::endl;
+    const auto x = count == 5 ? metres(words[3]) : std::nullopt, y = count == 5 ? metres(words[4]) : std::nullopt;
+    if (!x || !y) {
+        std::cerr << "usage: " << words[0] << " HOST PORT X Y, where X and Y are numbers, in metres" << std::endl;
         return 2;
     }
     struct sigaction interrupt{};
@@ -187,7 +196,7 @@ int main(int count, char** words) {
     sigaction(SIGINT, &interrupt, nullptr);
     try {
         Robot robot(words[1], words[2]);
-        return drive(robot, std::to_string(std::atof(words[3])) + ";" + std::to_string(std::atof(words[4])));
+        return drive(robot, std::to_string(*x) + ";" + std::to_string(*y));
     } catch (const std::exception& error) {  // the connection, and with it the lease, is gone: the robot stops by itself
         std::cerr << error.what() << std::endl;
         return 1;

@@ -3,8 +3,9 @@
 import net from "node:net";
 
 const [host, port, x, y] = process.argv.slice(2);
-if (y === undefined) {
-  console.error("usage: node goto.mjs HOST PORT X Y");
+const isNumber = (word) => word !== undefined && word.trim() !== "" && Number.isFinite(Number(word));
+if (!isNumber(x) || !isNumber(y)) {
+  console.error("usage: node goto.mjs HOST PORT X Y, where X and Y are numbers, in metres");
   process.exit(2);
 }
 

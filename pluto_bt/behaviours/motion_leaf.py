@@ -158,7 +158,7 @@ class MotionLeaf(RobotLeaf):
             if self._was_accepted:
                 return self._replaced(robot)
             if self._last_s - self._posted_s > ACCEPT_S:
-                return self.fail("chain-stopped", "motion does not take the command")
+                return self.fail("chain-stopped", "motion does not take the command; start the module motion, and what it needs")
             return None
         if status.reason == "bad-command":
             return self.fail("bad-command", status.text)

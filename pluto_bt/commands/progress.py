@@ -8,6 +8,7 @@ import shutil
 from typing import IO, Any
 
 from pluto_bt.blackboard.messages import Event
+from pluto_bt.gateway.words import said_by
 from pluto_bt.result import RunResult
 from pluto_bt.runtime.clock import wall_ns
 from pluto_bt.system import System
@@ -44,7 +45,7 @@ class Progress:
     def event(self, event: Event) -> None:
         """An event of the run."""
         mark = {"info": " ", "warning": "!", "error": "✗"}[event.level]
-        self.line(f"[{event.stamp_s:8.1f} s] {mark} {event.source}: {event.text}")
+        self.line(f"[{event.stamp_s:8.1f} s] {mark} {said_by(event.source, event.text)}")
 
     def show(self, system: System) -> None:
         """Called every now and then while the run goes on."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from pluto_bt.commands.gateway_call import gateway_parser, tell_refusal
+from pluto_bt.commands.gateway_call import gateway_parser, reach, tell_refusal
 from pluto_bt.source import Faults
 
 if TYPE_CHECKING:
@@ -38,12 +38,11 @@ def main(argv: list[str]) -> int:
 
 def record(to: Path, address: str, topics: list[str], seconds: float | None) -> int:
     """Write the file; 1 if there is no robot, or it knows no such topic."""
-    from pluto_bt.gateway.client import Client, GatewayError
-    from pluto_bt.gateway.listen import parse_address
+    from pluto_bt.gateway.backoff import AGAIN
+    from pluto_bt.gateway.client import GatewayError
 
-    host, port = parse_address(address)
     try:
-        with Client(host, port, name="record") as client:
+        with reach(address, name="record", backoff=AGAIN) as client:
             mission = client.request("mission", op="state")
             for topic in topics or ["*"]:
                 client.subscribe(topic, max_rate_hz=0.0 if topics else RATE_HZ)

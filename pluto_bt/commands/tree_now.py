@@ -43,10 +43,10 @@ def of_system(system: System) -> Drawn | None:
 
 def of_gateway(address: str) -> Drawn | None:
     """The tree of a running robot. None if nothing was ticked yet. Raises: GatewayError, InputError."""
-    from pluto_bt.gateway.client import Client, GatewayError
-    from pluto_bt.gateway.listen import parse_address
+    from pluto_bt.commands.gateway_call import reach
+    from pluto_bt.gateway.client import GatewayError
 
-    with Client(*parse_address(address)) as client:
+    with reach(address) as client:
         try:
             value = client.request("get", topic="tree")
         except GatewayError as error:

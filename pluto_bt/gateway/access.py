@@ -107,11 +107,23 @@ def read_access(tls: str | None, tokens: str | None, faults: Faults) -> Access:
         faults.error(place, "bad-option", "a TLS identity is two or three files", expected=expected, found=tls, mend=mend)
         return Access(keys)
     access = Access(keys, *map(str, files))
+    is_readable = [_is_readable(file, place, faults) for file in files]
+    if not all(is_readable):
+        return access
     try:
         access.context()
     except OSError as error:
         faults.error(place, "bad-certificate", "the TLS identity cannot be read", expected="PEM files that belong together", found=str(error))
     return access
+
+
+def _is_readable(file: Path, place: Place, faults: Faults) -> bool:
+    try:
+        file.open("rb").close()
+    except OSError as error:
+        faults.error(place, "bad-certificate", f'the file "{file}" cannot be read', expected="a PEM file", found=error.strerror or str(error))
+        return False
+    return True
 
 
 def _keys(file: str, faults: Faults) -> tuple[Key, ...]:

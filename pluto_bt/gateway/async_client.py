@@ -118,7 +118,10 @@ class AsyncClient:
         await self.request("command", command_body(position, velocity, acceleration, force), target=target, flags=flags)
 
     async def run(self, node: str, /, *, deadline_s: float = 0.0, on_progress: OnProgress = no_progress, **ports: Attribute) -> RunResult:
-        """Run one node or library tree to its end. Cancelling the task, or whatever else ends this call, stops the robot. Raises: GatewayError."""
+        """Run one node or library tree to its end. Cancelling the task, or whatever else ends this call, stops the robot. Raises: GatewayError.
+
+        `on_progress`: called as on_progress(state, text) while it goes on: "running" or another state, and the node's own words.
+        """
         one = self._ask("run", "", {"node": node, "deadline_s": deadline_s, **ports}, is_run=True)
         try:
             while not one.is_over:

@@ -12,6 +12,7 @@ from typing import cast
 from pluto_bt.gateway.backoff import STEADY_S, Backoff
 from pluto_bt.gateway.dialogue import Dialogue
 from pluto_bt.gateway.errors import NoConnectionError
+from pluto_bt.gateway.keeper import not_reached
 
 Wait = Callable[[float], Awaitable[None]]
 
@@ -109,7 +110,7 @@ class AsyncKeeper:
                 await self._loop.create_connection(lambda: _Ear(self), host, port, ssl=self._tls)
         except OSError as error:  # TimeoutError is one
             said = error.strerror or str(error) or f"no answer within {self._dialogue.timeout_s:g} s"
-            raise NoConnectionError("no-connection", f"no gateway at {self.place}: {said}; is a run with --gateway going on?") from None
+            raise not_reached(self.place, error, said) from None
 
     def opened(self, wire: asyncio.Transport) -> None:
         """The line says that it stands."""
@@ -128,7 +129,7 @@ class AsyncKeeper:
             return
         self.wire = None
         why = f"the connection is gone ({error})" if error is not None else "the gateway closed the connection"
-        self._dialogue.closed(why)
+        self._dialogue.closed(why, is_plain=self._tls is None)
         if self._backoff is None:
             self._dialogue.end(self._dialogue.reason(NoConnectionError("no-connection", why)))
         elif self._dialogue.final is None:

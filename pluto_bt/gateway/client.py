@@ -59,7 +59,7 @@ class Client:
         """
         self.timeout_s = timeout_s
         self.dialogue = Dialogue(hello_of(name, session, token), timeout_s, new_ids(session))
-        self._keeper = Keeper(self.dialogue, f"{host}:{port}", backoff, connect or dialer(host, port, tls), clock, wait)
+        self._keeper = Keeper(self.dialogue, f"{host}:{port}", backoff, connect or dialer(host, port, tls), clock, wait, is_plain=tls is None)
         self._keeper.open()
         if (name or session or token) and not self._keeper.pump(lambda: self.dialogue.welcome is not None, self._keeper.clock() + timeout_s):
             self.close()
@@ -146,7 +146,10 @@ class Client:
         self.request("command", command_body(position, velocity, acceleration, force), target=target, flags=flags)
 
     def run(self, node: str, /, *, deadline_s: float = 0.0, on_progress: OnProgress = no_progress, **ports: Attribute) -> RunResult:
-        """Run one node or library tree to its end. Whatever else ends this call (Ctrl-C first of all) stops the robot. Raises: GatewayError."""
+        """Run one node or library tree to its end. Whatever else ends this call (Ctrl-C first of all) stops the robot. Raises: GatewayError.
+
+        `on_progress`: called as on_progress(state, text) while it goes on: "running" or another state, and the node's own words.
+        """
         one = self.dialogue.ask("run", "", {"node": node, "deadline_s": deadline_s, **ports}, self._keeper.clock(), is_run=True)
         try:
             while not one.is_over:

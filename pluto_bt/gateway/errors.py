@@ -4,6 +4,7 @@
 PlutoError
 └─ GatewayError            .code is the word of PROTOCOL.md, or one of the two of ours
    ├─ NoConnectionError    no-connection: no gateway there, or the connection went before the answer came
+   │  └─ UnheardError      it hung up on a client without TLS, and had not said a word: it speaks TLS, most likely
    ├─ NoAnswerError        no-answer: the gateway is there and did not answer in time
    ├─ TurnedAwayError      the gateway ended the connection and says why (every fatal code)
    ├─ NoLeaseError         no-lease, lease-held: somebody else may drive
@@ -33,6 +34,10 @@ class GatewayError(PlutoError):
 
 class NoConnectionError(GatewayError):
     """There is no gateway, or it went before it had answered."""
+
+
+class UnheardError(NoConnectionError):
+    """A gateway hung up on a client without TLS before it had said anything."""
 
 
 class NoAnswerError(GatewayError):

@@ -57,18 +57,29 @@ def dialer(host: str, port: int, tls: ssl.SSLContext | None) -> Callable[[float]
     return dial
 
 
+def not_reached(place: str, error: OSError, said: str) -> NoConnectionError:
+    """Why there is no line to that place; `said`: the error in words."""
+    if isinstance(error, ssl.SSLError):
+        mend = "PLUTO_CERTIFICATE (tls= of a program) must be this gateway's certificate, and not set for a gateway without TLS"
+        return NoConnectionError("no-connection", f"no TLS with {place}: {said}; {mend}")
+    return NoConnectionError("no-connection", f"no gateway at {place}: {said}; is a run with --gateway going on?")
+
+
 class Keeper:
-    """Keeps the line of one dialogue. `place` is its address for people; `connect` and `wait` take seconds, `clock` gives them."""
+    """Keeps the line of one dialogue. `place` is its address for people; `connect` and `wait` take seconds, `clock` gives them.
+
+    `is_plain`: what `connect` gives speaks no TLS.
+    """
 
     def __init__(
         self, dialogue: Dialogue, place: str, backoff: Backoff | None, connect: Callable[[float], Line],
-        clock: Callable[[], float], wait: Callable[[float], None],
+        clock: Callable[[], float], wait: Callable[[float], None], *, is_plain: bool = False,
     ) -> None:  # fmt: skip
         self.line: Line | None = None
         self.place = place
         self.clock = clock
         self._dialogue, self._timeout_s, self._backoff = dialogue, dialogue.timeout_s, backoff
-        self._connect, self._wait = connect, wait
+        self._connect, self._wait, self._is_plain = connect, wait, is_plain
         self._attempt, self._retry_s, self._opened_s = 0, 0.0, 0.0
 
     def pump(self, is_over: Callable[[], bool], until_s: float) -> bool:
@@ -129,7 +140,7 @@ class Keeper:
 
     def _lost(self, why: str) -> None:
         self.hang_up()
-        self._dialogue.closed(why)
+        self._dialogue.closed(why, is_plain=self._is_plain)
         if self.clock() - self._opened_s >= STEADY_S:
             self._attempt = 0
         if self._backoff is None:
@@ -158,8 +169,7 @@ class Keeper:
         try:
             self.line = self._connect(self._timeout_s)
         except OSError as error:
-            text = f"no gateway at {self.place}: {error.strerror or error}; is a run with --gateway going on?"
-            raise NoConnectionError("no-connection", text) from None
+            raise not_reached(self.place, error, error.strerror or str(error)) from None
         self._opened_s = self.clock()
         self._dialogue.opened(self._opened_s)
 

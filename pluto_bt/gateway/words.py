@@ -53,3 +53,8 @@ def command_body(position: Sequence[float], velocity: Sequence[float], accelerat
 def hello_of(name: str, session: str, token: str) -> dict[str, str]:
     """What `<hello>` says of us."""
     return {"name": name, "session": session, "token": token}
+
+
+def said_by(source: str, text: str) -> str:
+    """`source: text`; the text alone where it begins with its source ("anna stopped the robot")."""
+    return text if source and text.startswith(f"{source} ") else f"{source}: {text}"

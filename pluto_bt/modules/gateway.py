@@ -36,7 +36,8 @@ class Gateway:
         except InputError as error:
             if options.gateway is not None or address is None or link.address is not None:
                 raise
-            self._trouble = error.faults[0].message
+            fault = error.faults[0]
+            self._trouble = f"{fault.message}: {fault.found}"
             return None if self._console is None else self._open(port, None)
         return link
 
@@ -86,5 +87,5 @@ class Gateway:
         if (link.is_lost or is_back) and not self._is_lost:
             self._say("warning", "gateway-lost", "gateway", "the gateway's process has ended, or hung; it is started again")
         if is_back:
-            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again ({link.restarts} times so far)")
+            self._say("info", "gateway-restarted", "gateway", f"the gateway's process was started again (start {link.restarts + 1} of this run)")
         self._restarts, self._is_lost = link.restarts, link.is_lost

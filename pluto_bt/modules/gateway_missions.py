@@ -73,6 +73,8 @@ class GatewayMissions:
         elif op in OPS_OF_STATE:
             if op == "resume":
                 self._refuse_if_latched()
+            if op == "pause" and self.state().state == PAUSED:
+                return  # it is as asked
             if self.state().state != OPS_OF_STATE[op]:
                 raise RefusedError("wrong-state", f"the mission is {self.state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
             core.pause(OPERATOR_STOP) if op == "pause" else self._system.operator_resume()
@@ -120,7 +122,7 @@ class GatewayMissions:
             raise RefusedError("estopped", f"emergency stop ({hold.text}); release it first")
 
     def _load(self, text: str) -> Mission:
-        mission = self._system.options.load(text)
+        mission = self._system.options.load_checked(text)
         mission.attach(self._system.robot)
         return mission
 

@@ -103,7 +103,14 @@ class GatewayPort:
             self._latch.release(OPERATOR_STOP)  # a new command is a deliberate act
         self._touch(command=target)
         if self._system.inboxes[LINK_OF_TARGET[target]].post(source, command):
-            raise RefusedError("wrong-state", f"{target} takes commands only from the link above it while that one's thread runs")
+            raise RefusedError("wrong-state", self._why_refused(target))
+
+    def _why_refused(self, target: str) -> str:
+        """Why a link does not take a command, and what would help."""
+        running = self._system.running_above(LINK_OF_TARGET[target])
+        if not running:
+            return f"{target} takes no commands now; <why/> tells what holds the robot"
+        return f"{target} takes commands only from the link above it while that runs; first {', then '.join(f'stop {link}' for link in running)}"
 
     def run_node(self, node: str, ports: Mapping[str, str], deadline_s: float, source: str) -> str:
         """Start one node as an errand."""

@@ -121,3 +121,8 @@ def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> t
 
 
 NOTHING: Array = np.zeros((0, 4))
+
+
+def warm() -> None:
+    """Use the kernel once, so that who comes near first is not met while it is compiled."""
+    walked(np.zeros((ROUNDS, 1)), np.zeros((ROUNDS, 3)), np.zeros((1, 3)), np.zeros(1, dtype=np.bool_), 0.1)

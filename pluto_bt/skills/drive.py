@@ -29,10 +29,10 @@ FLAGS = (0, 1, 10, 11)
 class DriveParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Table [drive] of a platform file. A limit of 0 is the platform's own."""
 
-    max_speed_mps: Annotated[NotNegative, Meta(description="speed limit")] = 0.0
-    max_turn_rate_dps: Annotated[NotNegative, Meta(description="limit of the turn rate")] = 0.0
-    acceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets faster")] = 0.0
-    deceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets slower")] = 0.0
+    max_speed_mps: Annotated[NotNegative, Meta(description="speed limit; 0 = the platform's own")] = 0.0
+    max_turn_rate_dps: Annotated[NotNegative, Meta(description="limit of the turn rate; 0 = the platform's own")] = 0.0
+    acceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets faster; 0 = the platform's own")] = 0.0
+    deceleration_mps2: Annotated[NotNegative, Meta(description="limit when it gets slower; 0 = the platform's own")] = 0.0
     timeout_s: Annotated[Positive, Meta(description="without a new command for so long the robot makes a controlled stop")] = 4.0
     odometry_stale_s: Annotated[Positive, Meta(description="older odometry means zero velocity")] = 0.3
     bumper_stale_s: Annotated[Positive, Meta(description="older bumper readings mean zero velocity")] = 0.5

@@ -178,3 +178,10 @@ def _seen_from(points: Array, x_m: float, y_m: float, theta_rad: float, now_s: f
             out[n, 3], out[n, 4] = c * vx + s * vy, c * vy - s * vx
             n += 1
     return out[:n]
+
+
+def warm() -> None:
+    """Use the kernels once that an empty place does not need."""
+    here = (0.0, 0.0, 0.0)
+    _outside_the_field(np.zeros((1, 6)), here, (0.0, 0.0), here, 1.0)
+    _heard_through(np.zeros((1, 6)), np.zeros((1, 3)), np.zeros(1), 0.1, *here)

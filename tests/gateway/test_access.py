@@ -171,6 +171,14 @@ def test_old_audit_logs_move_on_and_long_contents_are_counted_only(tmp_path: Pat
     assert kept["audit.jsonl"]["content"] == {"bytes": 1011}
 
 
+def test_a_tls_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:
+    faults = Faults()
+    (tmp_path / "cert.pem").write_text("")
+    read_access(f"{tmp_path / 'cert.pem'},{tmp_path / 'nix.pem'}", None, faults)
+    (fault,) = faults.in_order()
+    assert "nix.pem" in fault.message and "cert.pem" not in fault.message and fault.found == "No such file or directory"
+
+
 # real TLS ------------------------------------------------------------------------------------------------------------
 def make_certificates(folder: Path) -> None:
     """An authority, a server and a client named `panel`, as a person would make them."""

@@ -13,6 +13,7 @@ import threading
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import pytest
 
@@ -21,6 +22,8 @@ from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.port import RunState
 from pluto_bt.gateway.shell.main import main
 from pluto_bt.gateway.shell.table import ROWS, SUBSHELLS, help_text
+from pluto_bt.gateway.shell.telling import as_json
+from pluto_bt.gateway.words import said_by
 
 from .conftest import Running
 
@@ -138,6 +141,23 @@ def test_who_is_refused_the_lease_is_told_and_stops_nobody(running: Running) -> 
 )
 def test_what_is_not_understood_is_exit_2(running: Running, line: str, text: str) -> None:
     assert say(running, *line.split()) == (2, f"pluto shell: {text}\n")
+
+
+def test_the_events_of_a_source_do_not_begin_with_it_twice_and_commands_are_offered_once(running: Running) -> None:
+    assert said_by("anna", "anna stopped the robot") == "anna stopped the robot"
+    assert said_by("base", "the wheels stop") == "base: the wheels stop"
+    offered = say(running, "qqqqqq")[1].partition("one of: ")[2].strip().split(", ")
+    assert len(offered) == len(set(offered)) > 20
+
+
+def test_numbers_in_the_rows_of_a_recorded_value_are_numbers() -> None:
+    values = {"motion/status": '<element>3</element><status element="0" code="3" name="at-rest"/>',
+              "tree": '<tick>1</tick><node path="a" depth="1" name="7" since_s="0.5"/>'}  # fmt: skip
+    texts = [f'<value topic="{topic}" seq="1" stamp="1">{text}</value>' for topic, text in values.items()]
+    status, tree = (json.loads(as_json(ElementTree.fromstring(text))) for text in texts)
+    assert status["status"] == [{"element": 0, "code": 3, "name": "at-rest"}]
+    (node,) = tree["nodes" if tree.get("nodes") else "node"]
+    assert (node["depth"], node["name"], node["since_s"]) == (1, "7", 0.5)
 
 
 def test_stop_with_a_name_stops_a_module_and_alone_it_is_the_stop(running: Running) -> None:

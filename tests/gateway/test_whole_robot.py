@@ -127,6 +127,47 @@ def test_a_long_session_validates(tmp_path: Path) -> None:
     assert len({answer.get("topic") for answer in talk.heard if answer.tag == "value"}) > 20
 
 
+UNFIT = {"<GoTo/>": 'port "goal" of <GoTo> is missing', '<GoTo goal="{nix}"/>': 'nothing writes entry "nix"', "<RetryUntilSuccessful><AlwaysSuccess/>"
+         "</RetryUntilSuccessful>": "num_attempts"}  # fmt: skip
+
+
+def test_what_check_refuses_the_gateway_refuses_too_and_the_run_goes_on(tmp_path: Path) -> None:
+    """All this loads in BehaviorTree.CPP, and would raise at its first tick."""
+    says = {1.0: '<mission op="pause"/><lease op="acquire" ttl_s="60"/>', 2.5: '<run id="run" node="GoTo"/>', 4.0: '<mission op="resume"/>'}
+    for number, node in enumerate(UNFIT):
+        mission = f'<root BTCPP_format="4"><BehaviorTree ID="m">{node}</BehaviorTree></root>'
+        says[2.0 + 0.1 * number] = "".join(f'<mission id="{op}{number}" op="{op}">{mission}</mission>' for op in ("check", "load"))
+    model = '<TreeNodesModel><SubTree ID="m"><input_port name="to"/></SubTree></TreeNodesModel>'
+    inputs = f'<root BTCPP_format="4"><BehaviorTree ID="m"><GoTo goal="{{to}}"/></BehaviorTree>{model}</root>'
+    talk = Talk(tmp_path, {**says, 3.0: f'<mission id="inputs" op="load">{inputs}</mission><mission id="start" op="start"/>'}, x=3.0)
+    for number, text in enumerate(UNFIT.values()):
+        for (answer,) in (talk.told(f"check{number}"), talk.told(f"load{number}")):
+            assert answer.get("code") == "bad-mission" and text in answer.text and int(answer.get("col")) > 1
+    (refused,) = talk.told("run")
+    assert refused.get("code") == "bad-value" and 'port "goal" of <GoTo> is missing; expected goal="…": x;y, in m' in refused.text
+    assert 'input "to"' in talk.told("inputs")[0].text and talk.told("start")[0].get("code") == "wrong-state"
+    assert talk.result.result == "SUCCESS"
+
+
+def test_a_refused_raw_command_names_what_to_stop_first_and_a_second_pause_is_harmless(tmp_path: Path) -> None:
+    drive = '<command target="drive" flags="10"><velocity>0.1 0</velocity></command>'
+    talk = Talk(tmp_path, {
+        1.0: '<mission id="p1" op="pause"/><lease op="acquire" ttl_s="60"/>', 1.5: '<mission id="p2" op="pause"/>',
+        2.0: drive.replace(" ", ' id="both" ', 1),
+        3.0: '<module name="motion" op="stop"/>', 4.0: drive.replace(" ", ' id="avoid" ', 1), 5.0: '<mission op="abort"/>',
+    })  # fmt: skip
+    assert [talk.told(id)[0].tag for id in ("p1", "p2")] == ["ok", "ok"]
+    assert talk.told("both")[0].text.endswith("first stop motion, then stop avoid")
+    assert talk.told("avoid")[0].text.endswith("first stop avoid")
+
+
+def test_the_summary_is_that_of_the_mission_whose_ticks_it_counts(tmp_path: Path) -> None:
+    other = '<root BTCPP_format="4"><BehaviorTree ID="other"><Say name="hi" text="hi"/></BehaviorTree></root>'
+    asks = f'<mission op="pause"/><lease op="acquire" ttl_s="60"/><mission op="load">{other}</mission>'
+    talk = Talk(tmp_path, {1.0: asks, 2.0: '<mission op="start"/>'})
+    assert (talk.result.mission, talk.result.ticks, list(talk.result.leaves)) == ("other", 1, ["hi"])
+
+
 def test_what_was_stopped_is_not_shown_as_running(tmp_path: Path) -> None:
     """An errand beside a paused mission is stopped: tree and why speak of the mission again, live and replayed; and everybody reads who did it."""
     asks = '<get id="tree{0}" topic="tree"/><why id="why{0}"/>'

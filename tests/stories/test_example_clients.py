@@ -103,5 +103,6 @@ def test_what_the_robot_refuses_is_told_and_stops_nobody(words: list[str], port:
         assert refused.returncode == 1 and "wrong-state: a mission is running" in refused.stderr
         assert client.request("mission", op="state").get("state") == "running"
         client.request("mission", op="pause")
-    usage = subprocess.run(words, capture_output=True, text=True, timeout=LONG_S, check=False)
-    assert usage.returncode == 2 and "HOST PORT X Y" in usage.stderr
+    for wrong in ([], ["127.0.0.1", str(port), "3", "b"], ["127.0.0.1", str(port), "nan", "3"]):
+        usage = subprocess.run([*words, *wrong], capture_output=True, text=True, timeout=LONG_S, check=False)
+        assert usage.returncode == 2 and "HOST PORT X Y" in usage.stderr

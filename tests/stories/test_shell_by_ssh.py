@@ -103,9 +103,11 @@ def test_a_morning_round_by_ssh(robot: Robot) -> None:
 
     assert "unknown node" in robot.by_ssh("do", "GoTu", "goal=1,2").stderr
 
-    stranger = robot.pluto("stop", PLUTO_CERTIFICATE=f"{robot.folder}/cert.pem")
+    certificate = {"PLUTO_CERTIFICATE": f"{robot.folder}/cert.pem"}
+    assert robot.pluto("stop", **certificate).stdout == "stopped\n", "a stop is for anyone"
+    stranger = robot.pluto("pose", **certificate)
     assert stranger.returncode == 1 and "unauthorised" in stranger.stderr
-    anna = {"PLUTO_CERTIFICATE": f"{robot.folder}/cert.pem", "PLUTO_TOKEN": TOKEN}
+    anna = {**certificate, "PLUTO_TOKEN": TOKEN}
     assert robot.pluto("pose", **anna).stdout.startswith("x ")
     tuned = robot.pluto("params", "avoid.goto_tolerance_m=0.2", **anna)
     assert tuned.returncode == 1 and "expected somebody with the scope tune, found anna" in tuned.stderr

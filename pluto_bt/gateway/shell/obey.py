@@ -16,7 +16,7 @@ from pluto_bt.source import did_you_mean
 
 IN_WORDS = {
     '<mission op="pause"/>': "pause", '<mission op="abort"/>': "abort", '<release what="estop"/>': "release", "<describe/>": "topics",
-    "<params/>": "params",
+    "<params/>": "params", "<why/>": "why",
 }  # fmt: skip
 
 
@@ -41,7 +41,7 @@ def find(words: Sequence[str], shell: str = "") -> tuple[Row, list[str]]:
         shell, words = opened, words[1:]
     known = rows_in(shell)
     if words[0] not in known:
-        others = [*known, *SUBSHELLS, "help", "quit"]
+        others = list(dict.fromkeys((*known, *SUBSHELLS, "help", "quit")))
         raise UsageError(f'unknown command "{words[0]}"; {did_you_mean(words[0], others) or "expected one of: " + ", ".join(others)}')
     return known[words[0]], list(words[1:])
 
@@ -63,7 +63,7 @@ async def obey(robot: Robot, face: Face, words: Sequence[str], shell: str = "") 
     except FailedError as error:
         face.complain(str(error))
     except GatewayError as error:
-        face.complain(f"{error.code}: {_in_words(error.text)}")
+        face.complain(f"{error.code}: {_in_words(error.text)}{robot.advice(error)}")
     return FAILED
 
 

@@ -8,7 +8,7 @@ import contextlib
 from pluto_bt.gateway.async_client import AsyncClient
 from pluto_bt.gateway.client import Element, GatewayError
 from pluto_bt.gateway.listen import Address
-from pluto_bt.gateway.shell.ticket import Ticket
+from pluto_bt.gateway.shell.ticket import UNAUTHORISED, Ticket
 from pluto_bt.gateway.xml_text import Attribute
 
 NAME = "shell"  # the gateway keeps places for clients whose name begins so
@@ -35,8 +35,10 @@ class Robot:
 
     async def connect(self) -> AsyncClient:
         """One more connection. A command that loses its own has failed, for what it drove has been stopped. Raises: GatewayError."""
-        ticket = self._ticket
-        client = AsyncClient(*self.address, name=self.name, token=ticket.token, tls=ticket.context(), timeout_s=ANSWER_S, backoff=None)
+        return await self._connect(self.name, self._ticket.token)
+
+    async def _connect(self, name: str, token: str) -> AsyncClient:
+        client = AsyncClient(*self.address, name=name, token=token, tls=self._ticket.context(), timeout_s=ANSWER_S, backoff=None)
         return await client.open()
 
     async def request(self, tag: str, body: str = "", /, **attributes: Attribute) -> Element:
@@ -50,11 +52,20 @@ class Robot:
                 async with asyncio.timeout(STOP_S):
                     await self._client.stop()
                 return
-        fresh = await self.connect()
+        try:
+            fresh = await self.connect()
+        except GatewayError as error:
+            if error.code != UNAUTHORISED:
+                raise
+            fresh = await self._connect("", "")  # a stop is for anyone: who need not say who he is, is not asked
         try:
             await fresh.stop()
         finally:
             await fresh.close()
+
+    def advice(self, error: GatewayError) -> str:
+        """What the environment lacks, if that is why it came to this error; "" if it is not."""
+        return self._ticket.advice(error)
 
     async def close(self) -> None:
         """Let go; a lease that is held ends, and with it what it drove."""

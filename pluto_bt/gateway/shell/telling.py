@@ -8,11 +8,16 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+import msgspec
+
+from pluto_bt.blackboard.messages import ModuleState, NodeState
 from pluto_bt.gateway.client import Element
 from pluto_bt.gateway.subscriptions import ALIASES
 from pluto_bt.gateway.values import fields_of
 from pluto_bt.gateway.wire import TYPES
+from pluto_bt.gateway.words import said_by
 
+_ROWS: dict[str, type[msgspec.Struct]] = {"node": NodeState, "module": ModuleState}
 LONG_LIST = 12  # numbers shown of a longer list
 
 
@@ -20,7 +25,7 @@ def event_line(event: Element) -> str:
     """An event for a person, from an `<event>` or a `<value>` of the topic."""
     part = {child.tag: child.text or "" for child in event} if event.tag == "value" else {**event.attrib, "text": event.text or ""}
     time = event.get("stamp") or event.get("time") or "0"
-    return f"{float(time):9.2f} s  {part.get('level', ''):<7} {part.get('source', '')}: {part.get('text', '')}"
+    return f"{float(time):9.2f} s  {part.get('level', ''):<7} {said_by(part.get('source', ''), part.get('text', ''))}"
 
 
 def shown(value: Element) -> str:
@@ -41,7 +46,7 @@ def as_json(value: Element) -> str:
     fields: dict[str, Any] = {name: [] for name, kind in kinds.items() if kind == "rows"}
     for part in value:
         if part.attrib:
-            fields.setdefault(part.tag, []).append(dict(part.attrib))
+            fields.setdefault(part.tag, []).append(_row(part.tag, part.attrib))
         else:
             fields[part.tag] = _READ[kinds.get(part.tag, "str")](part.text or "")
     head = {"topic": topic, "seq": int(value.get("seq", "0")), "stamp_s": float(value.get("stamp", "0"))}
@@ -58,6 +63,19 @@ def _short(words: list[str]) -> list[str]:
     """Numbers without the digits that no sensor has; a text as it is."""
     values = [_number(word) for word in words]
     return words if None in values else [f"{value:.7g}" if "." in word else word for value, word in zip(values, words, strict=True)]
+
+
+def _row(tag: str, attributes: dict[str, str]) -> dict[str, Any]:
+    """A row of a list, each attribute as its field has it; one that we do not know is a text."""
+    kinds = _row_kinds(tag)
+    return {key: msgspec.convert(word, kinds.get(key, str), strict=False) for key, word in attributes.items()}
+
+
+@cache
+def _row_kinds(tag: str) -> dict[str, Any]:
+    if tag not in _ROWS:
+        return {"element": int, "code": int}
+    return {field.name: field.type for field in msgspec.structs.fields(_ROWS[tag])}
 
 
 def _number(word: str) -> float | None:

@@ -6,7 +6,10 @@ import os
 import ssl
 from typing import NamedTuple
 
-from pluto_bt.gateway.client import GatewayError
+from pluto_bt.gateway.client import Client, GatewayError
+from pluto_bt.gateway.listen import Address
+
+UNAUTHORISED = "unauthorised"
 
 
 class Ticket(NamedTuple):
@@ -31,3 +34,21 @@ class Ticket(NamedTuple):
         except OSError as error:
             raise GatewayError("no-connection", f"PLUTO_CERTIFICATE={self.certificate} cannot be read: {error}") from None
         return context
+
+    def advice(self, error: GatewayError) -> str:
+        """What the environment lacks, if that is why it came to this error; "" if it is not."""
+        return "; PLUTO_TOKEN is not set: put your token there" if error.code == UNAUTHORISED and not self.token else ""
+
+
+def stop(address: Address, ticket: Ticket) -> None:
+    """Zero velocity at once; by name if the gateway knows us, without one if it does not: a stop is for anyone. Raises: GatewayError."""
+    host, port = address
+    tls = ticket.context()
+    try:
+        with Client(host, port, token=ticket.token, tls=tls, backoff=None) as client:
+            client.stop()
+    except GatewayError as error:
+        if error.code != UNAUTHORISED:
+            raise
+        with Client(host, port, tls=tls, backoff=None) as client:
+            client.stop()

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Fault
 from pluto_bt.trees.checks.driving import check_driving
 from pluto_bt.trees.checks.flow import Flow
@@ -14,8 +15,10 @@ from pluto_bt.trees.checks.outcomes import Ends, outcome
 from pluto_bt.trees.checks.reach import check_reach
 from pluto_bt.trees.checks.robot_words import check_words
 from pluto_bt.trees.checks.unused import check_unused
+from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.expand import Plan
-from pluto_bt.trees.loader.load import Reading, no_collecting, read_mission
+from pluto_bt.trees.loader.load import Reading, build, no_collecting, read_mission
+from pluto_bt.trees.mission import Mission
 from pluto_bt.trees.scopes import Topics
 
 
@@ -59,6 +62,18 @@ def examine_mission(
             _check_whole(reading, reading.plan)
         check_unused(reading.unused, reading.files, reading.types, reading.report)
         return Examined(reading.report.faults.in_order(), reading.plan)
+
+
+def load_checked(text_or_path: str | Path, nodes: Iterable[Any] = (), clock: MissionClock | None = None, *, topics: Topics | None = None) -> Mission:
+    """`load_mission` of what `check_mission` takes, in one reading; nobody gives it inputs. Raises: MissionError with all errors."""
+    with no_collecting():
+        reading = read_mission(text_or_path, nodes, None, tree=None, ports={}, topics=topics, file=None, plugins=())
+        faults = reading.report.faults
+        if reading.plan is not None and reading.main is not None and not faults.is_full:
+            _check_whole(reading, reading.plan)
+        if faults.has_errors:
+            raise MissionError(tuple(fault for fault in faults.in_order() if fault.severity == "error"))
+        return build(reading, clock)
 
 
 def _check_whole(reading: Reading, root: Plan) -> None:

@@ -82,10 +82,11 @@ def load_mission(
     """
     with no_collecting():
         reading = read_mission(text_or_path, nodes, blackboard, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins)
-        return _build(reading, clock, enums, robot)
+        return build(reading, clock, enums, robot)
 
 
-def _build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int] | None, robot: Any) -> Mission:
+def build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int] | None = None, robot: Any = None) -> Mission:
+    """The mission that was read. Raises: MissionError for everything that BehaviorTree.CPP refuses at load."""
     report, faults = reading.report, reading.report.faults
     if report.stops_loading or reading.lacks_nodes or reading.plan is None or reading.main is None:
         raise MissionError(faults.in_order())
