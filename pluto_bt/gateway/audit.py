@@ -46,8 +46,8 @@ class Audit:
     def note(self, ask: Ask, reply: AnyReply, run_s: float) -> None:
         """A request and its answer."""
         outcome = reply.code if isinstance(reply, Error) else "ok"
-        content = msgspec.to_builtins(ask.request)
-        self._keep(run_s, ask, content.pop("_"), content, outcome)
+        content = {name: value for name, value in msgspec.to_builtins(ask.request).items() if name != "_"}
+        self._keep(run_s, ask, ask.request.element, content, outcome)
 
     def note_refused(self, refused: Refused, run_s: float) -> None:
         """A request that the gateway itself refused."""

@@ -22,14 +22,19 @@ class Request(msgspec.Struct, frozen=True, kw_only=True, tag=True, tag_field="_"
     id: Word = ""
 
     @property
+    def element(self) -> str:
+        """The name of its XML element."""
+        return _TAGS[type(self)]
+
+    @property
     def only_looks(self) -> bool:
         """True for what changes nothing on the robot: whoever may watch may ask it, and it may be asked again, or be forgotten with its client."""
-        return looks(_TAGS[type(self)], getattr(self, "op", ""))
+        return looks(self.element, getattr(self, "op", ""))
 
     @property
     def acts(self) -> bool:
         """True for what may change something: the audit log keeps it."""
-        return acts(_TAGS[type(self)], getattr(self, "op", ""))
+        return acts(self.element, getattr(self, "op", ""))
 
 
 class SayHello(Request, frozen=True, kw_only=True):

@@ -111,7 +111,7 @@ def test_the_audit_log_keeps_what_changes_something(tmp_path: Path) -> None:
     said(anna, '<run node="GoTo" goal="1;2"/><run node="Nothing"/><mission op="state"/>', gateway)
     lines = [json.loads(line) for line in audit.read_text(encoding="utf-8").splitlines()]
     assert [(line["name"], line["request"], line["outcome"]) for line in lines] == [
-        ("anna", "Stop", "ok"), ("anna", "Lease", "ok"), ("anna", "Run", "ok"), ("anna", "Run", "unknown-node"),
+        ("anna", "stop", "ok"), ("anna", "lease", "ok"), ("anna", "run", "ok"), ("anna", "run", "unknown-node"),
     ]  # fmt: skip
     assert lines[2]["content"]["ports"] == {"goal": "1;2"} and "0123456789abcdef" not in audit.read_text(encoding="utf-8")
 
@@ -136,7 +136,7 @@ def test_the_audit_log_keeps_what_was_refused_at_the_door(tmp_path: Path) -> Non
     lines = [json.loads(line) for line in audit.read_text(encoding="utf-8").splitlines()]
     assert [(line["name"], line["request"], line["outcome"]) for line in lines] == [
         ("", "hello", "unauthorised"), ("", "command", "unauthorised"), ("anna", "module", "read-only"), ("anna", "command", "bad-value"),
-        ("anna", "lease", "busy"), ("anna", "Lease", "ok"),
+        ("anna", "lease", "busy"), ("anna", "lease", "ok"),
     ]  # fmt: skip
     assert "eve" in lines[0]["content"]["text"] and "a guess" not in audit.read_text(encoding="utf-8")
 
