@@ -12,7 +12,7 @@ import msgspec
 from pluto_bt.gateway.replies import AnyReply, Error
 from pluto_bt.gateway.wire import Ask
 from pluto_bt.runtime.clock import calendar_ns
-from pluto_bt.runtime.state_folder import state_path
+from pluto_bt.runtime.state_folder import open_private, state_path
 
 LIMIT_BYTES = 16 * 1024 * 1024
 LINE_BYTES = 4096
@@ -61,7 +61,7 @@ class Audit:
             with contextlib.suppress(FileNotFoundError):
                 if self._path.stat().st_size > LIMIT_BYTES:
                     self._path.replace(self._path.with_name(self._path.name + ".1"))
-            with self._path.open("ab") as file:
+            with open(self._path, "ab", opener=open_private) as file:
                 file.write(lines)
         except OSError as error:
             self._trouble(f"the audit log {self._path} cannot be written: {error.strerror or error}")
