@@ -13,7 +13,7 @@ import msgspec
 from pluto_bt.gateway.replies import AnyReply, Error
 from pluto_bt.gateway.wire import Ask, Refused
 from pluto_bt.runtime.clock import calendar_ns
-from pluto_bt.runtime.state_folder import state_path
+from pluto_bt.runtime.state_folder import open_private, state_path
 
 LIMIT_BYTES, OLD_FILES = 16 * 1024 * 1024, 4
 CONTENT_BYTES, NAME_CHARACTERS = 512, 128
@@ -96,7 +96,7 @@ class Audit:
                 for number in range(OLD_FILES, 0, -1):
                     with contextlib.suppress(FileNotFoundError):
                         _old(path, number - 1).replace(_old(path, number))
-        with path.open("ab", buffering=0) as file:
+        with open(path, "ab", buffering=0, opener=open_private) as file:
             begin = file.tell()
             try:
                 if file.write(lines) != len(lines):

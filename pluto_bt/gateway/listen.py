@@ -11,6 +11,7 @@ from pluto_bt.source.faults import InputError, Place, fail
 
 DEFAULT_PORT = 7500
 WEB_PORT = 7580
+EVERYWHERE = ("0.0.0.0", "::")
 BACKLOG = 128
 """Callers who wait to be let in. Whoever calls, shouts and hangs up again and again fills it, and every caller behind him waits for all of that."""
 GUARDED = {"--gateway": "the gateway", "--web": "the web console"}
@@ -22,6 +23,11 @@ class Address(NamedTuple):
 
     host: str = "127.0.0.1"
     port: int = DEFAULT_PORT
+
+    @property
+    def reachable(self) -> Address:
+        """The address to type: who listens on all addresses is called by the name of this machine."""
+        return Address(socket.gethostname(), self.port) if self.host in EVERYWHERE else self
 
     def __str__(self) -> str:
         return f"[{self.host}]:{self.port}" if ":" in self.host else f"{self.host}:{self.port}"

@@ -136,7 +136,7 @@ class Release(Request, frozen=True, kw_only=True):
 
 
 class MissionOp(Request, frozen=True, kw_only=True):
-    """The mission: load, start, pause and so on; `text` is the inline document."""
+    """The mission: load, check, start, pause and so on; a document of one's own stands inside as `<root …>`."""
 
     op: Literal["load", "check", "start", "pause", "resume", "abort", "list", "fetch", "state"]
     name: str = ""

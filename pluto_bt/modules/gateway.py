@@ -68,7 +68,7 @@ class Gateway:
         if self.console_address is not None:
             access = self._options.gateway_access
             scheme = "https" if access is not None and access.certificate else "http"
-            self._say("info", "web-console", "gateway", f"the web console is at {scheme}://{self.console_address}/")
+            self._say("info", "web-console", "gateway", f"the web console is at {scheme}://{self.console_address.reachable}/")
 
     def step(self, now_s: float) -> None:
         """Answer, publish, look after the process."""

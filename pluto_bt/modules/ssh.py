@@ -36,7 +36,7 @@ class Ssh:
             self._context.say("warning", "no-ssh", "ssh", "nobody can come by ssh, for this run has no gateway; give one with --gateway HOST:PORT")
             return
         self._link.start(now_s, gateway)
-        self._context.say("info", "ssh", "ssh", f"the shell is at ssh -p {self.address.port} {self.address.host}")
+        self._context.say("info", "ssh", "ssh", f"the shell is at ssh -p {self.address.port} {self.address.reachable.host}")
 
     def step(self, now_s: float) -> None:
         """Look after the process."""

@@ -16,3 +16,8 @@ def state_folder() -> Path:
     folder = state_path()
     folder.mkdir(parents=True, exist_ok=True)
     return folder
+
+
+def open_private(path: str, flags: int) -> int:
+    """The `opener` of a file that only the user may read; one that is there keeps its mode. Raises: OSError."""
+    return os.open(path, flags, 0o600)

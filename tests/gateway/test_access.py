@@ -238,3 +238,14 @@ def test_over_tls_people_come_by_token_or_certificate(tmp_path: Path, unpumped: 
     with socket.create_connection(address, timeout=WAIT_S) as plain:
         plain.sendall(b"<ping/>")  # no TLS: the library ends it
         assert b"<pong" not in plain.recv(4096)
+
+
+def test_the_audit_log_is_for_the_user_alone(tmp_path: Path) -> None:
+    gateway = LocalGateway(FakeRobot(), audit=Audit(tmp_path / "audit.jsonl"))
+    said(gateway.connect(), "<stop/>", gateway)
+    assert (tmp_path / "audit.jsonl").stat().st_mode & 0o777 == 0o600
+
+
+def test_who_listens_everywhere_is_called_by_a_name() -> None:
+    assert Address("0.0.0.0", 7580).reachable.host not in ("", "0.0.0.0")
+    assert Address("127.0.0.1", 7580).reachable == Address("127.0.0.1", 7580)

@@ -150,6 +150,16 @@ def test_the_events_of_a_source_do_not_begin_with_it_twice_and_commands_are_offe
     assert len(offered) == len(set(offered)) > 20
 
 
+@pytest.mark.parametrize(("result", "line"), [
+    (RunState("preempted", "preempted", "anna began another run"), "preempted: anna began another run\n"),
+    (RunState("failed", "stuck", "GoTo::1 (GoTo) failed: stuck: no way"), "failed: GoTo::1 (GoTo) failed: stuck: no way\n"),
+    (RunState("failed", "stuck", "no way"), "failed: stuck: no way\n"),
+])  # fmt: skip
+def test_a_result_says_no_word_twice(running: Running, result: RunState, line: str) -> None:
+    runs_end(running, result)
+    assert say(running, "goto", "1", "2") == (1, line)
+
+
 def test_numbers_in_the_rows_of_a_recorded_value_are_numbers() -> None:
     values = {"motion/status": '<element>3</element><status element="0" code="3" name="at-rest"/>',
               "tree": '<tick>1</tick><node path="a" depth="1" name="7" since_s="0.5"/>'}  # fmt: skip

@@ -129,6 +129,7 @@ def history_of(name: str) -> History:
     with suppress(OSError, RuntimeError):
         path = state_folder() / name
         if os.access(path if path.exists() else path.parent, os.W_OK):
+            path.touch(mode=0o600)
             return FileHistory(str(path))
     return InMemoryHistory()
 

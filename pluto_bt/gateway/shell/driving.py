@@ -75,7 +75,8 @@ def inputs(settings: Sequence[str]) -> dict[str, str]:
 
 def tell_result(face: Face, result: RunResult) -> int:
     """State, reason and text of a run, and what came out of it."""
-    face.say(": ".join(filter(None, (result.state, result.reason, result.text))))
+    is_told = result.reason == result.state or f"{result.reason}:" in result.text  # no word twice
+    face.say(": ".join(filter(None, (result.state, "" if is_told else result.reason, result.text))))
     for name, value in result.outputs.items():
         if name != "reason":
             face.say(f"  {name} = {value}")
