@@ -82,6 +82,8 @@ class Exchange:
             if not self._queue.is_ready or not has_room() or self._answers > ANSWERS_A_STEP or self._port.now_s() > until_s:
                 break  # answers that nobody takes must not pile up here, nor the rest of the step wait
             self._handle(*self._queue.next(), now_s)
+        if self._answers and has_room():
+            self._publish(now_s, is_due=True)  # no older than the answers, so that whoever asks next is answered by the gateway itself
         self._desk.step(now_s)
         self._audit.step()
 
@@ -126,7 +128,7 @@ class Exchange:
         self._watched = topics
         self._sent_seq = {topic: seq for topic, seq in self._sent_seq.items() if topic in topics}
 
-    def _publish(self, now_s: float) -> None:
+    def _publish(self, now_s: float, *, is_due: bool = False) -> None:
         values = []
         for topic in self._watched:
             newest = self._port.newest(topic) if topic != _EVENTS else None
@@ -136,7 +138,7 @@ class Exchange:
         events = tuple(self._port.events_after(self._event_seq)) if _EVENTS in self._watched else ()
         if events:
             self._event_seq = events[-1][0]
-        if values or events or now_s - self._batch_s >= HEARTBEAT_S:
+        if values or events or is_due or now_s - self._batch_s >= HEARTBEAT_S:
             self._batch_s = now_s
             self._send(Batch(now_s, tuple(values), events))
 

@@ -36,7 +36,7 @@ class Hub:
         self.robot = welcome.robot
         self.access = welcome.access
         self.topics = welcome.topics
-        self.batch_s = float("-inf")  # when the executive last told what has changed
+        self.batches = 0  # how often the executive has told what has changed
         self._catalogue, self._described = welcome.catalogue, tuple[Described, ...]()
         self._send = send
         self._sessions: dict[int, Session] = {}
@@ -98,7 +98,7 @@ class Hub:
             session.answer(frame, now_s)
             return (frame.client,)
         self._run_minus_ours_s = frame.now_s - now_s
-        self.batch_s = now_s
+        self.batches += 1
         touched: dict[int, None] = {}
         for value in frame.values:
             if value.topic not in self._watched:  # it was on its way when the last listener left; nothing would make it new again

@@ -51,7 +51,7 @@ class Session:
         self._scopes: tuple[str, ...] = () if hub.access.keys else SCOPES
         self._is_known = not hub.access.keys  # by a token, or by a certificate
         self._greeted = False
-        self._answered_s = now_s  # when the executive last answered: what he told before is out of date
+        self._answered_at = hub.batches  # how much the executive had told when it last answered: that is out of date
         self._is_reserve = is_reserve
         self._has_stopped = False
         self._outstanding = 0
@@ -181,7 +181,7 @@ class Session:
 
     def _get(self, request: requests.Get, now_s: float) -> None:
         """Answered here if what is known here is no older than anything that this client has heard from the executive; else asked for."""
-        is_fresh = not self._outstanding and self._hub.batch_s > self._answered_s
+        is_fresh = not self._outstanding and self._hub.batches > self._answered_at
         newest = self._hub.get(request.topic, now_s)
         if newest is None or not is_fresh:
             self._ask(request)
@@ -200,7 +200,7 @@ class Session:
     def answer(self, answer: Answer, now_s: float) -> None:
         """The executive's word to one of our requests."""
         reply = answer.reply
-        self._answered_s = now_s
+        self._answered_at = self._hub.batches
         if answer.lane == "stop":
             self._stop_answered(reply)
             return

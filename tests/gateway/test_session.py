@@ -408,3 +408,33 @@ def test_what_a_client_has_just_changed_is_what_he_gets(story: Story) -> None:
         assert (ok.tag, value.findtext("value")) == ("ok", str(i))
         for _ in range(i % 15):
             story.step()
+
+
+def test_who_asks_again_and_again_is_answered_by_the_gateway_itself(story: Story) -> None:
+    """After the executive's first answers nothing that it said is newer than what the gateway knows."""
+    story.robot.write("Localization/Pose", m.Pose(0.02, (1.0, 2.0, 0.0, 0.5, 0.0, 0.0)))
+    asked = "".join(f'<get topic="Localization/Pose" id="{i}"/>' for i in range(50))
+    clients = [story.client() for _ in range(4)]
+    for client in clients:
+        client.send(asked)
+    heard = [0] * len(clients)
+    for _ in range(8):
+        story.step()
+        heard = [count + len(story.hears(client)) for count, client in zip(heard, clients, strict=True)]
+    assert heard == [50] * len(clients)
+    for client in clients:
+        client.send(asked)
+        assert [value.get("id") for value in story.hears(client)] == [str(i) for i in range(50)], "no step of the robot was needed"
+
+
+def test_a_value_that_is_older_than_an_answer_is_not_given(story: Story) -> None:
+    client = story.client()
+    story.robot.write("Localization/Pose", m.Pose(0.02, (1.0, 2.0, 0.0, 0.5, 0.0, 0.0)))
+    for _ in range(3):
+        story.says(client, '<get topic="Localization/Pose"/>')
+    client.send('<modules/><get topic="Localization/Pose"/>')
+    assert story.hears(client) == [], "the executive is asked, and the answers keep their order"
+    story.robot.write("Localization/Pose", m.Pose(0.04, (3.0, 2.0, 0.0, 0.5, 0.0, 0.0)))
+    story.step()
+    modules, value = story.hears(client)
+    assert (modules.tag, value.findtext("pose")) == ("modules", "3.0 2.0 0.0 0.5 0.0 0.0")
