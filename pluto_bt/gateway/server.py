@@ -118,7 +118,7 @@ class ClientProtocol(asyncio.Protocol):
             yield
 
     def _turn(self) -> None:
-        """Take a message after the other, as long as one's turn lasts and the answers can be sent; the rest in the next turn."""
+        """Take a message after the other, as long as one's turn lasts; one a turn while the answers cannot be sent. The rest in the next turn."""
         if self._taking is None or self._transport.is_closing():
             return
         mark_bytes, until_ns = self._server.hub.limits.write_mark_bytes, wall_ns() + TURN_NS

@@ -228,31 +228,80 @@ def test_a_console_for_elsewhere_without_tls_and_tokens_is_refused() -> None:
     assert "--gateway-tls" in fault.expected and "ssh -L" in fault.mend
 
 
-def test_connections_that_ask_for_nothing_are_ended_and_others_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(doorkeeper, "PATIENCE_S", 1.0)
-    monkeypatch.setattr(doorkeeper, "CONNECTIONS", 4)
+ASK = b"GET / HTTP/1.1\r\nHost: x\r\n\r\n"
 
-    async def story() -> None:
-        app = web.Application()
-        app.router.add_get("/", slow)
-        listener = socket.create_server(("127.0.0.1", 0))
-        serving = asyncio.create_task(doorkeeper.Doorkeeper(app).listen(listener))
-        idle = [await asyncio.open_connection(*listener.getsockname()) for _ in range(3)]
-        idle[0][1].write(b"GET / HTTP/1.1\r\nHost: x\r\n")  # and never the rest
-        asks = await asyncio.open_connection(*listener.getsockname())
-        asks[1].write(b"GET / HTTP/1.1\r\nHost: x\r\n\r\n")
-        one_too_many = await asyncio.open_connection(*listener.getsockname())
-        assert await one_too_many[0].read() == b""
-        for reader, _ in idle:
-            with suppress(ConnectionError):
-                assert await asyncio.wait_for(reader.read(), 10.0) == b""
-        may_end.set()
-        assert b"here it is" in await asyncio.wait_for(asks[0].readuntil(b"here it is"), 10.0), "it asked, and was waited for"
-        serving.cancel()
+
+@asynccontextmanager
+async def kept(may_end: asyncio.Event) -> AsyncIterator[tuple[tuple[str, int], asyncio.Semaphore]]:
+    """A doorkeeper's address, and who has asked there; what is asked there is answered at `may_end`."""
 
     async def slow(request: web.Request) -> web.Response:
+        arrived.release()
         await may_end.wait()
         return web.Response(text="here it is")
 
-    may_end = asyncio.Event()
-    asyncio.run(story())
+    app, arrived = web.Application(), asyncio.Semaphore(0)
+    app.router.add_get("/", slow)
+    listener = socket.create_server(("127.0.0.1", 0))
+    serving = asyncio.create_task(doorkeeper.Doorkeeper(app).listen(listener))
+    yield listener.getsockname(), arrived
+    serving.cancel()
+
+
+async def is_answered(reader: asyncio.StreamReader) -> bool:
+    return b"here it is" in await asyncio.wait_for(reader.readuntil(b"here it is"), 10.0)
+
+
+async def is_let_go(reader: asyncio.StreamReader) -> bool:
+    with suppress(ConnectionError):
+        return await asyncio.wait_for(reader.read(), 10.0) == b""
+    return True
+
+
+def test_connections_that_ask_for_nothing_are_ended_and_others_are_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doorkeeper, "PATIENCE_S", 1.0)
+
+    async def story() -> None:
+        may_end = asyncio.Event()
+        async with kept(may_end) as (address, arrived):
+            idle = [await asyncio.open_connection(*address) for _ in range(3)]
+            idle[0][1].write(ASK[:-2])  # and never the rest
+            asks = await asyncio.open_connection(*address)
+            asks[1].write(ASK)
+            await arrived.acquire()
+            for reader, _ in idle:
+                assert await is_let_go(reader)
+            may_end.set()
+            assert await is_answered(asks[0]), "it asked, and was waited for"
+
+    asyncio.run(asyncio.wait_for(story(), 30.0))
+
+
+def test_when_all_places_are_taken_who_has_not_asked_for_the_longest_time_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(doorkeeper, "CONNECTIONS", 3)
+
+    async def story() -> None:
+        may_end = asyncio.Event()
+        may_end.set()
+        async with kept(may_end) as (address, arrived):
+            callers = [await asyncio.open_connection(*address) for _ in range(3)]
+            for number in (1, 0, 2):  # each asks, and then sits there
+                callers[number][1].write(ASK)
+                await arrived.acquire()
+                assert await is_answered(callers[number][0])
+            may_end.clear()
+            page = await asyncio.open_connection(*address)
+            page[1].write(ASK)
+            await arrived.acquire()
+            assert await is_let_go(callers[1][0])
+            for number in (0, 2):
+                callers[number][1].write(ASK)
+                await arrived.acquire()
+            page_too = await asyncio.open_connection(*address)
+            assert await is_let_go(page_too[0]), "each of the others is being answered"
+            may_end.set()
+            for reader, _ in (page, callers[0], callers[2]):
+                assert await is_answered(reader)
+
+    asyncio.run(asyncio.wait_for(story(), 30.0))
+

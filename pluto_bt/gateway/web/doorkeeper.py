@@ -13,7 +13,7 @@ from aiohttp.web_protocol import RequestHandler
 from pluto_bt.gateway.web.house import Handler
 
 CONNECTIONS = 128
-"""Connections at one time, WebSockets included."""
+"""Connections at one time, WebSockets included. Are all places taken, who has not asked for longest gives way: the page with STOP comes in."""
 HANDSHAKE_S = 3.0
 PATIENCE_S = 10.0
 """A connection must have asked for something within this time, and again after each answer."""
@@ -43,11 +43,24 @@ class Doorkeeper:
         assert server is not None, "set up before it listens"
         now_s = asyncio.get_running_loop().time()
         self._forget(now_s)
-        if len(self._since_s) >= CONNECTIONS:
+        if len(self._since_s) >= CONNECTIONS and not self._let_one_go():
             return _Closed()
         connection = server()
         self._since_s[connection] = now_s
         return connection
+
+    def _is_idle(self, connection: RequestHandler) -> bool:
+        return connection.transport is not None and id(connection) not in self._busy
+
+    def _let_one_go(self) -> bool:
+        """Make room; False if each of them is being answered."""
+        oldest = min(filter(self._is_idle, self._since_s), key=self._since_s.__getitem__, default=None)
+        if oldest is None or oldest.transport is None:
+            return False
+        del self._since_s[oldest]  # now, not when the loop comes round to it: many may come at once
+        self._open.discard(oldest)
+        oldest.transport.abort()
+        return True
 
     def _forget(self, now_s: float) -> None:
         """Those that are gone; one that was admitted just now has no transport yet."""
@@ -73,7 +86,7 @@ class Doorkeeper:
     def _round(self, now_s: float) -> None:
         self._forget(now_s)
         for connection, since_s in self._since_s.items():
-            if connection.transport is not None and id(connection) not in self._busy and now_s - since_s >= PATIENCE_S:
+            if self._is_idle(connection) and now_s - since_s >= PATIENCE_S and connection.transport is not None:
                 connection.transport.abort()
 
 
