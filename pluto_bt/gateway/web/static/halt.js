@@ -4,7 +4,7 @@
 import { askOnce } from "./doorbell.js";
 import { byId, say, show, toast } from "./dom.js";
 
-const STANDS_MPS = 0.01, STANDS_RADPS = 0.01, TOLD_MS = 6000;
+const STANDS_MPS = 0.01, STANDS_RADPS = 0.01, MOVES_MPS = 0.03, MOVES_RADPS = 0.05, TOLD_MS = 6000;
 const AT_REST = matchMedia("(pointer: coarse)").matches ? "for anyone, at any time" : "space bar";
 
 export class Halt {
@@ -32,9 +32,9 @@ export class Halt {
     link.on("event", ({ code }) => { if (code === "estop" || code === "estop-released") why.look(); });
   }
 
-  /** The space bar, wherever one is; only where text is typed it is a space. */
+  /** The space bar, wherever one is; only where text is typed it is a space, and in a recording it plays. */
   key(event) {
-    if (event.code !== "Space" || isTyping(event.target)) return;
+    if (event.code !== "Space" || isTyping(event.target) || document.body.dataset.mode === "box") return;
     event.preventDefault();
     event.stopPropagation();
     if (!event.repeat) this.stop();
@@ -73,7 +73,7 @@ export class Halt {
     } else if (["zero", "standing"].includes(this.phase) && !isZero(commanded, 0, 0)) this.takeBack();
     if (this.phase === "zero" && isZero(driven, STANDS_MPS, STANDS_RADPS)) {
       this.reached("standing", `standing · zero in ${byId("stop").dataset.zeroMs} ms`);
-    } else if (this.phase === "standing" && !isZero(driven, STANDS_MPS, STANDS_RADPS)) this.takeBack();
+    } else if (this.phase === "standing" && !isZero(driven, MOVES_MPS, MOVES_RADPS)) this.takeBack();
   }
 
   /** So far the order has come; told for a while. */
