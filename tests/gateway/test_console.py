@@ -342,8 +342,9 @@ def test_a_connection_on_which_nobody_says_hello_is_given_up(browser: Any, runni
 def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Callable[..., Screen], running: Running) -> None:
     screen = open_console()
     screen.waits_for("#verdict", "Standing")
-    pid = running.link.pid
+    pid, goes_on = running.link.pid, threading.Event()
     assert pid is not None
+    running.on_step = lambda: goes_on.wait() and None  # the whole computer stands still: else the gateway would be replaced
     os.kill(pid, signal.SIGSTOP)
     try:
         screen.waits_for("#link", "silent")
@@ -351,6 +352,7 @@ def test_a_link_that_falls_silent_says_so_before_it_is_given_up(open_console: Ca
         screen.waits_for("#no-link", "No link")
     finally:
         os.kill(pid, signal.SIGCONT)
+        goes_on.set()
     screen.waits_for("#link", "ms")
     screen.waits_for("#verdict", "Standing")
 

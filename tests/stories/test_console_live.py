@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import signal
 import subprocess
@@ -79,7 +80,7 @@ def test_a_robot_is_watched_stopped_sent_elsewhere_and_let_go_on(browser: Any) -
         screen.click("#goal-goto")
         screen.waits_for("#toast", "Go to", "succeeded")
         at = pose(screen)
-        assert abs(at[0] - goal[0]) < 0.5 and abs(at[1] - goal[1]) < 0.5
+        assert math.dist(at, goal) < 0.8, "0.3 m of tolerance, and the map moves under the finger while the robot drives"
         screen.click("[data-op=resume]")
         screen.waits_for("#mission-chip", "running")
         assert screen.complaints == []
