@@ -38,7 +38,8 @@ class Live(NamedTuple):
         assert self.process.stdin is not None and self.process.stdout is not None
         self.process.stdin.write(b"\n")
         self.process.stdin.flush()
-        return json.loads(self.process.stdout.readline())  # type: ignore[no-any-return]
+        told: dict[str, Any] = json.loads(self.process.stdout.readline())
+        return told
 
     def client(self, name: str) -> Client:
         """A client of its gateway."""

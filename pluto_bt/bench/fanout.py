@@ -13,7 +13,7 @@ import select
 import socket
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -62,7 +62,7 @@ def run() -> Iterator[BenchRow]:
 def _foxglove(mine: Measured) -> BenchRow:
     """Against foxglove-sdk, if that is installed (PYTHONPATH)."""
     try:
-        import foxglove  # type: ignore[import-not-found,unused-ignore]  # noqa: F401
+        import foxglove  # type: ignore[import-not-found,unused-ignore]  # noqa: F401  # no part of an installation: only whether it is there
     except ImportError:
         return BenchRow("processor time, gateway / foxglove-sdk", float("nan"), "×", "<= 0.4", "not installed: pip install foxglove-sdk")
     other = min(_baseline("foxglove", CLIENTS) for _ in range(ROUNDS))
@@ -124,14 +124,14 @@ def _say_hello_websocket(connection: socket.socket) -> None:
     connection.sendall(bytes([0x81, 0x80 | len(wish)]) + bytes(4) + wish)
 
 
-def _listen(port: int, pid: int, clients: int, hello: object) -> Measured:
+def _listen(port: int, pid: int, clients: int, hello: Callable[[socket.socket], None]) -> Measured:
     """Connect so many clients, let them settle, then measure."""
     poll = select.epoll()
     connections: dict[int, socket.socket] = {}
     try:
         for _ in range(clients):
             connection = _connect(port)
-            hello(connection)  # type: ignore[operator]
+            hello(connection)
             connection.setblocking(False)
             connections[connection.fileno()] = connection
             poll.register(connection, select.EPOLLIN)

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import select
 import signal
 import socket
 from collections.abc import Callable, Iterator
-from typing import Any
 
 from lxml import etree
 
+from pluto_bt.bench.attacks import Live
 from pluto_bt.bench.fanout import cpu_s, process_of
 from pluto_bt.bench.row import BenchRow, best_pair_us
 from pluto_bt.bench.silent_robot import TOPIC
@@ -87,7 +86,7 @@ def _parsing() -> BenchRow:
     limits, mine, theirs = Limits(), 0.0, 0.0
     for request in REQUESTS:
         framer = Framer(limits)
-        ours, lxmls = best_pair_us(lambda: list(framer.feed(request)), lambda: etree.fromstring(request), 4000)  # noqa: B023
+        ours, lxmls = best_pair_us(lambda: list(framer.feed(request)), lambda: etree.fromstring(request), 4000)  # noqa: B023  # called before the loop goes on
         mine, theirs = mine + ours, theirs + lxmls
     note = f"{mine / len(REQUESTS):.2f} µs, lxml {theirs / len(REQUESTS):.2f} µs"
     return BenchRow("parse a request, gateway / lxml", mine / theirs, "×", "<= 1.0", note)
@@ -127,14 +126,9 @@ def _build(topic: str, value: m.Message) -> Callable[[], bytes]:
 # beside a whole robot ------------------------------------------------------------------------------------------------
 def _beside_a_robot() -> Iterator[BenchRow]:
     with process_of("-m", "pluto_bt.bench.live_robot", f"gateway.clients={2 * CLIENTS}") as process:
-        assert process.stdout is not None and process.stdin is not None
-
-        def tell() -> dict[str, Any]:
-            process.stdin.write(b"\n")  # type: ignore[union-attr]
-            process.stdin.flush()  # type: ignore[union-attr]
-            return json.loads(process.stdout.readline())  # type: ignore[union-attr,no-any-return]
-
+        assert process.stdout is not None
         port = int(process.stdout.readline())
+        tell = Live(process, port).tells
         _watch(port, 0, 3.0)
         tell()
         _watch(port, 0, WATCH_S)

@@ -65,15 +65,16 @@ def main(words: list[str]) -> None:
     system.executive.on_ticked = lambda activities, lines: ticks_ms.append(system.clock.now_ns() / (NS / 1000))
     thread = threading.Thread(target=runner.run)
     thread.start()
-    gateway, *ssh = (part.component for name in ("gateway", "ssh") for part in system.parts if part.module.name == name)
-    ports = [gateway.address.port, *(door.address.port for door in ssh), *([gateway.console_address.port] if keys else [])]  # type: ignore[attr-defined]
+    found: list[Any] = [part.component for name in ("gateway", "ssh") for part in system.parts if part.module.name == name]
+    gateway, *ssh = found
+    ports = [gateway.address.port, *(door.address.port for door in ssh), *([gateway.console_address.port] if keys else [])]
     print(*ports, flush=True)
     for _ in sys.stdin:
         late_ms, ticks_ms[:] = lateness_ms(ticks_ms), []
         mission = system.board.newest("mission/state")
         state = mission.value.state if mission is not None and isinstance(mission.value, MissionState) else ""
         p50, p999, worst = np.percentile(late_ms, [50.0, 99.9, 100.0])
-        told = {"late_ms": late_ms, "ticks": len(late_ms), "p50_ms": p50, "p999_ms": p999, "worst_ms": worst, "pid": gateway.pid, "mission": state}  # type: ignore[attr-defined]
+        told = {"late_ms": late_ms, "ticks": len(late_ms), "p50_ms": p50, "p999_ms": p999, "worst_ms": worst, "pid": gateway.pid, "mission": state}
         print(json.dumps(told | {"zero_ns": ear.zero_ns, "stands": ear.stands, "events": [event.code for event in events]}), flush=True)
     runner.loop.interrupt()
     thread.join()
