@@ -163,11 +163,6 @@ def may(scopes: Sequence[str], request: AnyRequest) -> bool:
     return "admin" in scopes or scope_of(request) in scopes
 
 
-def whole(token: str) -> Access:
-    """An access with one token that may do everything, for tests; "" = nobody is asked."""
-    return Access().with_token("", token) if token else Access()
-
-
 def shown_scopes(scopes: Sequence[Any]) -> str:
     """For messages."""
     return ", ".join(scopes) or "none"

@@ -10,11 +10,12 @@ from lxml import etree
 
 from pluto_bt import gateway
 from pluto_bt.blackboard import messages as m
-from pluto_bt.gateway.access import Access, whole
+from pluto_bt.gateway.access import Access
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.local import LocalClient, LocalGateway
 from pluto_bt.gateway.port import RunState
 
+from .conftest import whole
 from .robot import FakeRobot
 
 SCHEMA = etree.XMLSchema(etree.parse(str(Path(gateway.__file__).with_name("protocol.xsd"))))

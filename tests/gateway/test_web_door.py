@@ -17,13 +17,12 @@ import pytest
 
 from pluto_bt.blackboard import messages as m
 from pluto_bt.commands.doors import check_web
-from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.wire import Scenery
 from pluto_bt.source import Faults
 
-from .conftest import Running
+from .conftest import Running, whole
 from .test_access import access_of, make_certificates, people_file
 
 aiohttp = pytest.importorskip("aiohttp", reason="the web console needs aiohttp (extra web)")

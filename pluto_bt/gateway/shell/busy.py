@@ -9,7 +9,7 @@ from typing import Any
 
 from prompt_toolkit.application import Application
 from prompt_toolkit.application.current import get_app_session
-from prompt_toolkit.input.typeahead import store_typeahead
+from prompt_toolkit.input.typeahead import get_typeahead, store_typeahead
 from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
 from prompt_toolkit.key_binding.key_processor import KeyPress
 from prompt_toolkit.layout import HSplit, Layout, Window
@@ -36,6 +36,7 @@ class BusyScreen:
         self._shown: Callable[[], str] | None = None  # by a command that wants the keys
         self._keys: asyncio.Queue[str] = asyncio.Queue()
         self._ahead: list[KeyPress] = []  # typed while a command went on: the next prompt takes it up
+        self._is_ending = False
         self._work: asyncio.Task[int] | None = None
         lines = HSplit([
             Window(FormattedTextControl(self._line), height=1),
@@ -59,22 +60,23 @@ class BusyScreen:
 
     async def watch(self, work: Coroutine[Any, Any, int]) -> None:
         """Do the work, until it is over or ended. Raises: what the work raises."""
-        self._text, self._shown = "", None
+        self._text, self._shown, self._is_ending = "", None, False
         self._work = asyncio.create_task(work)
         self._work.add_done_callback(self._over)
         try:
             if not self._work.done():
                 await self._app.run_async(handle_sigint=self._has_signals)
         finally:
+            keyboard = get_app_session().input
+            store_typeahead(keyboard, self._ahead + get_typeahead(keyboard))  # the screen, closing, put there what it had not taken up
+            self._ahead = []
             self._work.cancel()
             with suppress(asyncio.CancelledError):
                 await self._work
-            store_typeahead(get_app_session().input, self._ahead)
-            self._ahead = []
 
     def end(self) -> None:
-        """End the command; what was typed ahead is forgotten."""
-        self._ahead = []
+        """End the command; what was typed ahead is forgotten, what is typed from now on is for the prompt."""
+        self._ahead, self._is_ending = [], True
         if self._work is not None:
             self._work.cancel()
 
@@ -89,6 +91,11 @@ class BusyScreen:
         while True:
             yield await self._keys.get()
 
+    def _keep(self, event: KeyPressEvent) -> None:
+        """For the next prompt."""
+        if len(self._ahead) < KEYS_AHEAD:
+            self._ahead += event.key_sequence
+
     def _bindings(self) -> KeyBindings:
         bindings = KeyBindings()
 
@@ -99,7 +106,9 @@ class BusyScreen:
 
         @bindings.add("c-d")
         def leave(event: KeyPressEvent) -> None:
-            if self._shown is not None:
+            if self._is_ending:
+                self._keep(event)
+            elif self._shown is not None:
                 self._keys.put_nowait("q")
             else:
                 self.end()
@@ -108,9 +117,9 @@ class BusyScreen:
         @bindings.add("<any>")
         def hit(event: KeyPressEvent) -> None:
             key = event.key_sequence[0].key
-            if self._shown is not None:
+            if self._shown is not None and not self._is_ending:
                 self._keys.put_nowait("space" if key == " " else str(getattr(key, "value", key)))
-            elif len(self._ahead) < KEYS_AHEAD:
-                self._ahead += event.key_sequence
+            else:
+                self._keep(event)
 
         return bindings
