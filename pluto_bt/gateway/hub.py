@@ -9,6 +9,7 @@ from pluto_bt.gateway.describe import Described, describe, described
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outlets import Outlets
+from pluto_bt.gateway.places import Places
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.replies import Description
 from pluto_bt.gateway.requests import AnyRequest, Describe
@@ -36,6 +37,7 @@ class Hub:
         self.robot = welcome.robot
         self.access = welcome.access
         self.topics = welcome.topics
+        self.places = Places(welcome.limits)
         self.batches = 0  # how often the executive has told what has changed
         self._catalogue, self._described = welcome.catalogue, tuple[Described, ...]()
         self._send = send
@@ -79,7 +81,7 @@ class Hub:
             self._asked.discard(session.client)
             self._send(Gone(session.client))
         old = dict(session.subscriptions.flows)
-        session.subscriptions.end()
+        session.end()
         self._leave(old, session)
         self.watch()
 
@@ -114,6 +116,9 @@ class Hub:
         """Look after manners and rates, some times a second; the clients who have something to be sent."""
         touched: dict[int, None] = dict.fromkeys(self._evicted)
         self._evicted.clear()
+        for client in self.places.slow(now_s):
+            self._sessions[client].fail("timeout", f"others wait: expected a long message to be whole within {self.limits.document_s:g} s")
+            touched[client] = None
         self._hand_out(self._channels.late(now_s), touched)
         if any(until_s <= now_s for until_s in self._interest.values()):
             self._interest = {topic: until_s for topic, until_s in self._interest.items() if until_s > now_s}

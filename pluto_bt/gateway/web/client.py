@@ -7,7 +7,8 @@ import contextlib
 
 from aiohttp import WSMsgType, web
 
-from pluto_bt.gateway.server import SLICE_BYTES, Server
+from pluto_bt.gateway.client_protocol import SLICE_BYTES
+from pluto_bt.gateway.server import Server
 from pluto_bt.gateway.session import Session
 from pluto_bt.gateway.web.house import known
 
