@@ -234,7 +234,7 @@ class Desk:
         told = inquiries.mission(port, request)
         if told is not None:
             return told
-        port.mission(request.op, request.name, request.text, source_of(ask))
+        port.mission(request.op, request.name, request.text, source_of(ask), request.ports)
         if request.op in _MOVES:
             self._stop_again(stops, ask)
         return Ok()

@@ -114,7 +114,7 @@ class Exchange:
         """Read a document, in whatever thread, if anybody still wants it."""
         if self._queue.is_wanted(hold, ask):
             with contextlib.suppress(Exception):  # it is raised again where the request is answered
-                self._port.prepare_mission(request.op, request.name, request.text)
+                self._port.prepare_mission(request.op, request.name, request.text, request.ports)
         self._prepared.append((hold, ask, stops))
 
     def _answer_prepared(self, now_s: float) -> None:
