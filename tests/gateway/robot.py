@@ -29,6 +29,7 @@ class FakeRobot:
         self.on_prepare = lambda text: None
         self.rev = 1
         self.items: list[Item] = []
+        self.documents: dict[str, str] = {}
 
     def write(self, topic: str, value: m.Message) -> None:
         old = self.values.get(topic)
@@ -120,7 +121,7 @@ class FakeRobot:
         self.did.append(("module", name, op))
 
     def mission_text(self, name: str) -> str:
-        return f"<root>{name}</root>"
+        return self.documents.get(name, f"<root>{name}</root>")
 
     def params(self, request: Params, source: str) -> ParamsState:
         if request.op == "set" and request.rev not in (None, self.rev):

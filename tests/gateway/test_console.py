@@ -430,6 +430,31 @@ def test_a_mission_is_paused_aborted_and_another_one_started(open_console: Calla
     assert [entry[1:3] for entry in running.robot.did] == [("pause", ""), ("abort", ""), ("load", "trip2"), ("start", "")]
 
 
+VISITS = """<root BTCPP_format="4" main_tree_to_execute="A"><BehaviorTree ID="A"><SubTree ID="B"/></BehaviorTree><BehaviorTree ID="B"/>
+<TreeNodesModel><SubTree ID="B"><input_port name="other"/></SubTree><SubTree ID="A"><input_port name="speed_mps" type="double" default="0.5">how fast</input_port>
+<input_port name="goals" type="points">where to, %s</input_port></SubTree></TreeNodesModel></root>"""
+
+
+def test_a_mission_is_given_what_it_asks_for(open_console: Callable[..., Screen], running: Running) -> None:
+    running.robot.documents["patrol"] = VISITS % EVIL.replace("&", "&amp;").replace("<", "&lt;")
+    screen = open_console()
+    screen.click("#tab-mission")
+    screen.waits_for("#mission-choice", "trip2")
+    assert screen.page.input_value("#mission-choice") == "" and screen.page.is_disabled("#mission-start"), "nothing is chosen by itself"
+    screen.page.select_option("#mission-choice", "patrol")
+    screen.waits_for("#mission-note", "goals must be given")
+    names = screen.page.locator("#mission-inputs b").all_inner_texts()
+    assert names == ["goals", "speed_mps"] and screen.page.is_disabled("#mission-start")
+    assert EVIL in screen.text("#mission-inputs") and "in m/s · usually 0.5" in screen.text("#mission-inputs")
+    screen.page.fill("#mission-inputs input >> nth=0", "1,2;3,<4")
+    screen.click("#mission-start")
+    screen.until(lambda: len(running.robot.did) == 2)
+    assert running.robot.did == [("mission", "load", "patrol", "", {"goals": "1,2;3,<4"}), ("mission", "start", "", "")]
+    screen.page.select_option("#mission-choice", "trip2")
+    screen.page.wait_for_selector("#mission-inputs", state="hidden")
+    assert screen.complaints == []
+
+
 def test_a_mission_that_goes_on_is_replaced_only_by_a_second_click(open_console: Callable[..., Screen], running: Running) -> None:
     running.robot.write("mission/state", m.MissionState(0.0, "patrol", 1, "running"))
     screen = open_console()
