@@ -136,6 +136,11 @@ class Exchange:
         self._desk.gateway_lost()
         self._audit.step(self._port.now_s())
 
+    def end(self) -> None:
+        """The robot's software ends, and the gateway with it."""
+        self.gateway_lost()
+        self._audit.end(self._port.now_s())
+
     def _forget_all(self) -> None:
         """Nobody waits, nobody watches. Only while nothing is received."""
         self._queue.clear()

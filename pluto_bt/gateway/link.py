@@ -112,7 +112,7 @@ class GatewayLink:
         if self._courier is not None:
             self._courier.close()
         self._aside.end()
-        self._exchange.gateway_lost()
+        self._exchange.end()
         for listener in filter(None, (self._listener, self._web)):
             listener.close()
         self._listener = self._web = self._courier = None
