@@ -17,7 +17,8 @@ from pluto_bt.gateway.requests import ELEMENTS, AnyRequest, Run, Vector
 from pluto_bt.source import did_you_mean
 
 _FROM_CONTENT = {
-    "command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text", "ports"), "params": ("values",), "set": ("fields",),
+    "command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text", "ports"), "params": ("values",),
+    "set": ("fields",),
 }  # fmt: skip
 _ATTRIBUTES = {
     tag: tuple(name for name in kind.__struct_fields__ if name not in _FROM_CONTENT.get(tag, ())) for tag, kind in ELEMENTS.items()

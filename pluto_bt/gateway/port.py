@@ -109,7 +109,7 @@ class RobotPort(Protocol):
         """Missions that can be loaded by name."""
 
     def mission(self, op: str, name: str, text: str, source: str, ports: Mapping[str, str] = NO_PORTS) -> None:
-        """Do `load`, `check` (both with these inputs of the main tree), `start`, `pause`, `resume` or `abort`. Raises: RefusedError, with every fault of a document."""
+        """Do `load`, `check` (both with these inputs), `start`, `pause`, `resume` or `abort`. Raises: RefusedError with every fault of a document."""
 
     def prepare_mission(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Read the document of a `load` or `check`, which takes long, so that `mission` with the same words is quick. Thread-safe; never raises."""

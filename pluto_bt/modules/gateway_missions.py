@@ -153,7 +153,8 @@ def _refusal(error: MissionError, codes: Mapping[str, str], otherwise: str, *, w
     """All faults of a document, each with its line and column in it (line 1 = that of `<root>`)."""
     refusals = []
     for fault in error.faults:
-        words = (fault.message, fault.expected and f"expected {fault.expected}", fault.found and f"found {fault.found}", GIVE if fault.code == "missing-input" else fault.mend)
+        mend = GIVE if fault.code == "missing-input" else fault.mend
+        words = (fault.message, fault.expected and f"expected {fault.expected}", fault.found and f"found {fault.found}", mend)
         place = (fault.line, fault.column) if with_place else (0, 0)
         refusals.append(RefusedError(codes.get(fault.code, otherwise), "; ".join(filter(None, words)), *place))
     first, *more = refusals[:FAULTS_TOLD]

@@ -133,7 +133,8 @@ def test_a_leaf_whose_entry_nothing_wrote_on_this_way_fails_with_node_port_and_c
     mission = stage.load(f"<Sequence><AlwaysSuccess _onFailure=\"place:='1;2'\"/>{leaf}</Sequence>")
     assert stage.tick(mission) == "FAILURE" and mission.blackboard["why"] == "no-input"
     port = "goal" if "goal" in leaf else "angle_deg"
-    told = f"no-input: port \"{port}\" of \"out\" has no value: entry 'place' has no value; write it on every way that leads here, or once at the beginning"
+    why = "entry 'place' has no value; write it on every way that leads here, or once at the beginning"
+    told = f'no-input: port "{port}" of "out" has no value: {why}'
     assert [node.feedback_message for node in mission.root.iterate() if node.name == "out"] == [told]
     assert stage.robot.commands in ([], [0])  # nothing moves
     mission.blackboard["place"] = "1;2" if port == "goal" else "90"

@@ -26,7 +26,8 @@ from .conftest import Running
 ATTACK_S, PING_EVERY_S, WAIT_S = 0.3, 0.006, 20.0
 GROWTH_MB = 10.0
 CODE = {
-    "attribute": "too-large", "text": "too-large", "name": "too-large", "comment": "too-large", "white-space": "too-large", "mission": "too-large", "mission-names": "too-large",
+    "attribute": "too-large", "text": "too-large", "name": "too-large", "comment": "too-large", "white-space": "too-large", "mission": "too-large",
+    "mission-names": "too-large",
     "attributes": "too-large", "bomb": "restricted-xml", "xxe": "restricted-xml", "inner-doctype": "restricted-xml",
     "undefined-entity": "restricted-xml", "instruction": "restricted-xml", "xinclude": "not-well-formed", "depth": "too-deep",
     "mission-depth": "too-deep", "utf-16": "bad-encoding", "nul": "not-well-formed", "bad-utf-8": "bad-encoding", "cut-utf-8": "bad-encoding",

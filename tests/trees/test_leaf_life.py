@@ -341,5 +341,5 @@ def test_an_input_without_value_fails_a_leaf_of_the_library_and_is_an_error_of_a
 
     say, theirs = (mission_of(f'<{node} name="n" text="{{word}}"/>', Theirs) for node in ("Say", "Theirs"))
     assert say.tick_once() == "FAILURE" and say.root.feedback_message.startswith('no-input: port "text" of "n" has no value')
-    with pytest.raises(TickError, match='port "text" of "n" has no value: .* write it on every way'):
+    with pytest.raises(TickError, match=r'port "text" of "n" has no value: .* write it on every way'):
         theirs.tick_once()

@@ -40,7 +40,7 @@ export class InputForm {
   }
 
   box({ name, usual, form, isNeeded }) {
-    const box = make("input", { type: "text", value: usual, placeholder: form, spellcheck: false, autocomplete: "off", required: isNeeded, "aria-label": name });
+    const box = make("input", { type: "text", value: usual, placeholder: isNeeded ? form : `usually ${usual || "empty"}`, title: form, spellcheck: false, autocomplete: "off", required: isNeeded, "aria-label": name });
     box.oninput = () => this.onChange();
     return box;
   }
@@ -56,8 +56,7 @@ export class InputForm {
   }
 }
 
-function row({ name, form, unit, usual, isNeeded, words, box }) {
-  const limits = [form, unit && `in ${unit}`, isNeeded ? "" : `usually ${usual || "empty"}`].filter(Boolean).join(" · ");
-  const label = make("span", { class: "name" }, make("b", {}, name), isNeeded ? make("span", { class: "needed" }, " to be given") : "");
-  return make("label", { class: "param" }, label, box, make("span", { class: "limits" }, limits), make("span", { class: "words" }, words));
+function row({ name, unit, isNeeded, words, box }) {
+  const label = make("span", { class: "name" }, make("b", {}, name), unit && make("span", { class: "limits" }, ` ${unit}`), isNeeded ? make("span", { class: "needed" }, " to be given") : "");
+  return make("label", { class: "param" }, make("span", {}, label, make("span", { class: "words" }, words)), box);
 }
