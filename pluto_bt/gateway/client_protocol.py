@@ -43,7 +43,7 @@ class ClientProtocol(asyncio.Protocol):
         hub = self._server.hub
         keep_buffers_small(self._transport, hub.limits.write_mark_bytes)
         self._session = hub.open(self._loop.time())
-        self._session.on_place = self._go_on
+        self._session.place.on_free = self._go_on
         if len(self._server.clients) >= 2 * hub.limits.clients and not self._server.let_one_go():
             self._session.fail("too-many-connections", "too many others are being turned away just now")
             self._transport.write(self._session.to_send(self._loop.time(), 0))
@@ -124,10 +124,10 @@ class ClientProtocol(asyncio.Protocol):
         for _ in self._taking:
             if len(self._session.queue) > mark_bytes:
                 self.flush()
-            if self._session.is_held_up or self._is_full or wall_ns() > until_ns:
+            if self._session.place.is_held_up or self._is_full or wall_ns() > until_ns:
                 self.flush()
                 self._transport.pause_reading()
-                if not self._session.is_held_up:
+                if not self._session.place.is_held_up:
                     self._go_on()
                 return
         self._taking = None

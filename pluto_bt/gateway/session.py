@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from pluto_bt.gateway import requests
@@ -12,7 +12,7 @@ from pluto_bt.gateway.framing import Message
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outstanding import Outstanding
 from pluto_bt.gateway.parse import parse
-from pluto_bt.gateway.places import LONG_BYTES
+from pluto_bt.gateway.places import Place
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
 from pluto_bt.gateway.replies import CAPABILITIES, AnyReply, Error, Hello, Ok, Pong, Value, with_id
@@ -36,7 +36,7 @@ class Session:
     Attributes:
         peer: the client's address, for the audit log; the server sets it.
         name, session: what he said in hello; with a token, the name that belongs to it.
-        is_held_up: a long message of his must wait for its place: do not give us more of it until `on_place` is called, which the server sets.
+        place: of his long message; while that `is_held_up`, give us no more of it.
     """
 
     def __init__(self, client: int, hub: Hub, now_s: float, *, is_reserve: bool = False) -> None:
@@ -55,9 +55,7 @@ class Session:
         self._is_reserve = is_reserve
         self._has_stopped = False
         self._outstanding = Outstanding(hub.limits)
-        self._has_place = False  # of those for long messages
-        self.is_held_up = False
-        self.on_place: Callable[[], None] = _nobody
+        self.place = Place(hub.places, client)
         self._taken_bytes = 0  # of the message that is being taken
         self._began_s = now_s
         self._heard_s = now_s
@@ -97,16 +95,7 @@ class Session:
         self._mind_place(now_s)
 
     def _mind_place(self, now_s: float) -> None:
-        """A long message needs a place from its beginning until it is answered."""
-        places = self._hub.places
-        if self._connection.unfinished_bytes > LONG_BYTES and not self.closing:
-            self._has_place = places.take(self.client, now_s, self.on_place)
-            self.is_held_up = not self._has_place
-        elif self._has_place and self._outstanding.size_bytes > LONG_BYTES:
-            places.rest(self.client)
-        elif self._has_place or self.is_held_up:
-            places.leave(self.client)
-            self._has_place = self.is_held_up = False
+        self.place.mind(self._connection.unfinished_bytes, self._outstanding.size_bytes, now_s)
 
     def _take(self, message: Message, now_s: float) -> None:
         if self.closing and message.tag not in STOPS:
@@ -222,14 +211,13 @@ class Session:
     def fail(self, code: str, text: str, id: str = "") -> None:
         """A fatal error."""
         self._connection.fail(code, text, id=id)
-        self._hub.places.leave(self.client)
+        self.place.leave()
 
     def end(self) -> None:
         """The connection is gone. What it kept goes at once: somebody may still know this object for a while."""
         self._connection.close()
         self.subscriptions.end()
-        self._hub.places.leave(self.client)
-        self.on_place = _nobody
+        self.place.end()
 
     def answer(self, answer: Answer, now_s: float) -> None:
         """The executive's word to one of our requests."""
@@ -244,8 +232,7 @@ class Session:
             return
         if answer.lane == "direct":
             self._outstanding.answered()
-            if self._has_place:
-                self._mind_place(now_s)
+            self._mind_place(now_s)
         if isinstance(reply, Value):
             newest = Newest(ALIASES.get(reply.topic, reply.topic), reply.seq, reply.age_s, now_s, reply.payload)
             self._connection.send(newest.line(now_s, shown=reply.topic, id=reply.id))
@@ -274,9 +261,5 @@ class Session:
             self.fail("slow-consumer", f"{unread_bytes} bytes of replies wait unread; expected at most {limits.backlog_bytes}")
         elif (not self._is_known or self.is_stranger) and now_s - self._began_s >= limits.hello_s:
             self.fail("timeout", f"expected hello within {limits.hello_s:g} s")
-        elif now_s - self._heard_s >= limits.idle_s and not self.is_held_up:
+        elif now_s - self._heard_s >= limits.idle_s and not self.place.is_held_up:
             self.fail("timeout", f"no byte came for {limits.idle_s:g} s; send <ping/> now and then")
-
-
-def _nobody() -> None:
-    """Who waits for a place in a process without sockets."""

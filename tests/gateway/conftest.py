@@ -56,8 +56,8 @@ class Running:
         """Until the executive knows that every client is gone, and what that entails is done."""
         exchange, pause = self.link._exchange, threading.Event()
         until_ns = wall_ns() + round(PATIENCE_S * NS)
-        while exchange._watched or exchange._desk._leases.held is not None:
-            assert wall_ns() < until_ns, f"watched: {exchange._watched}, lease: {exchange._desk._leases.held}"
+        while exchange._watched or exchange._desk._helm.held is not None:
+            assert wall_ns() < until_ns, f"watched: {exchange._watched}, lease: {exchange._desk._helm.held}"
             wait(pause, 0.001)
 
     def pump(self) -> None:

@@ -22,14 +22,14 @@ class Clients:
         self.gateway = LocalGateway(self.robot, LIMITS)
         self.sessions = [self.gateway.hub.open(0.0) for _ in range(count)]
         for number, session in enumerate(self.sessions):
-            session.on_place = lambda number=number: self.woken.append(number)  # type: ignore[misc]
+            session.place.on_free = lambda number=number: self.woken.append(number)  # type: ignore[misc]
 
     def sends(self, number: int, data: bytes, now_s: float = 0.0) -> Session:
         self.sessions[number].receive(data, now_s)
         return self.sessions[number]
 
     def held_up(self) -> list[int]:
-        return [number for number, session in enumerate(self.sessions) if session.is_held_up]
+        return [number for number, session in enumerate(self.sessions) if session.place.is_held_up]
 
 
 def test_the_third_long_message_waits_until_one_is_answered() -> None:
@@ -40,10 +40,9 @@ def test_the_third_long_message_waits_until_one_is_answered() -> None:
     clients.sends(0, TAIL)
     assert clients.woken == [], "whole, but not answered"
     clients.gateway.step(0.1)
-    assert clients.woken == [2]
-    assert not clients.sends(2, b" ").is_held_up and clients.sends(3, b" ").is_held_up
+    assert (clients.woken, clients.held_up()) == ([2], [3])
     clients.gateway.hub.close(clients.sessions[1])
-    assert clients.woken == [2, 3] and not clients.sends(3, b" ").is_held_up
+    assert (clients.woken, clients.held_up()) == ([2, 3], [])
 
 
 def test_short_messages_need_no_place() -> None:
@@ -55,15 +54,27 @@ def test_short_messages_need_no_place() -> None:
 
 
 def test_who_sends_slowly_gives_way_but_only_to_others() -> None:
-    clients = Clients(3)
+    clients = Clients(5)
     for number in range(2):
         clients.sends(number, LONG)
     clients.gateway.step(LIMITS.document_s + 1.0)
     assert not clients.sessions[0].closing
-    clients.sends(2, LONG, LIMITS.document_s + 1.0)
+    for number in range(2, 5):
+        clients.sends(number, LONG, LIMITS.document_s + 1.0)
     clients.gateway.step(LIMITS.document_s + 1.0)
-    assert [session.closing for session in clients.sessions] == [True, True, False] and clients.woken == [2, 2]
+    assert [session.closing for session in clients.sessions] == [True, True, False, False, False] and clients.woken == [2, 3]
     assert b'code="timeout"' in clients.sessions[0].to_send(0.0, 0)
+    clients.gateway.step(2 * LIMITS.document_s)
+    clients.gateway.step(3 * LIMITS.document_s + 1.0)
+    assert (clients.woken, clients.held_up()) == ([2, 3, 4], []), "who says no more when he has his place loses it as well"
+
+
+def test_who_waits_and_is_cut_off_is_read_again_to_his_end() -> None:
+    clients = Clients(3)
+    for number in range(3):
+        clients.sends(number, LONG)
+    clients.sessions[2].fail("shutdown", "")
+    assert (clients.woken, clients.held_up()) == ([2], [])
 
 
 def test_nothing_is_left_of_a_long_message_whose_client_has_gone() -> None:
@@ -76,10 +87,10 @@ def test_nothing_is_left_of_a_long_message_whose_client_has_gone() -> None:
 
 def test_who_waits_longest_is_next_and_who_comes_anew_does_not_overtake_him() -> None:
     places, woken = Places(LIMITS), list[int]()
-    assert [places.take(client, 0.0, lambda client=client: woken.append(client)) for client in range(5)] == [True, True, False, False, False]  # type: ignore[misc]
-    places.leave(0)
-    assert woken == [2] and not places.take(7, 0.0, lambda: None) and not places.take(3, 0.0, lambda: None)
-    assert places.take(2, 0.0, lambda: None)
+    taken = [places.take(client, 0.0, lambda client=client: woken.append(client)) for client in range(5)]  # type: ignore[misc]
+    assert taken == [True, True, False, False, False]
     places.leave(3)  # he gives up waiting
+    places.leave(0)
+    assert woken == [2] and not places.take(7, 0.0, lambda: None) and places.take(2, 0.0, lambda: None)
     places.leave(1)
     assert woken == [2, 4]

@@ -28,6 +28,8 @@ class WebClient:
         self._session.peer = ":".join(map(str, (request.transport.get_extra_info("peername") or ())[:2])) if request.transport else ""
         self._session.known_as(known(request, server.hub.access))
         self._wake = asyncio.Event()
+        self._may_go_on = asyncio.Event()
+        self._session.place.on_free = self._may_go_on.set
 
     def flush(self) -> None:
         """Something may have to be sent."""
@@ -63,6 +65,9 @@ class WebClient:
                     self.flush()
                     await asyncio.sleep(0)
             self.flush()
+            while self._session.place.is_held_up:
+                self._may_go_on.clear()
+                await self._may_go_on.wait()
             if at + SLICE_BYTES < len(data):
                 await asyncio.sleep(0)
 
