@@ -75,9 +75,12 @@ class Round:
     """A robot that drives circles between house and fence, and whose records are read as they come."""
 
     def __init__(self, platform: Platform) -> None:
-        from sim import Simulator
+        from sim import BaseDevice, Simulator
 
         self.simulator = Simulator(yard(), platform, seed=1, start=(4.0, 4.0, 0.3))
+        base = self.simulator.devices["base"]
+        assert isinstance(base, BaseDevice)
+        self._base = base
         self._step = 0
 
     def step(self) -> None:
@@ -85,7 +88,7 @@ class Round:
         simulator = self.simulator
         simulator.step(self._step * STEP_S)
         self._step += 1
-        simulator.devices["base"].drive(0.5, 0.35)  # type: ignore[attr-defined]  # the base is the one device that drives
+        self._base.drive(0.5, 0.35)
         for device in simulator.devices.values():
             device.read()
 
