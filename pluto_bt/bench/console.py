@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pluto_bt.bench.live import PATIENCE_S, Live, drive_on, on_patrol
+from pluto_bt.bench.live import PATIENCE_S, Live, drive_on, on_patrol, until
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import NS, wait, wall_ns
@@ -67,7 +67,7 @@ class Ssh:
         control = self.folder / "control"
         master = subprocess.Popen(self.words("-M", "-S", str(control), "-N", HOST), stdin=subprocess.DEVNULL)
         try:
-            _until(control.exists)
+            until(lambda: control.exists() or None, "nobody logs in")
             yield ["-S", str(control)]
         finally:
             master.terminate()
@@ -188,15 +188,6 @@ def _terminal(words: list[str]) -> Iterator[Terminal]:
         process.kill()
         process.wait()
         os.close(ours)
-
-
-def _until(holds: Callable[[], bool]) -> None:
-    """Raises: TimeoutError."""
-    pause, until_ns = threading.Event(), wall_ns() + round(PATIENCE_S * NS)
-    while not holds():
-        if wall_ns() > until_ns:
-            raise TimeoutError("nothing came of it")
-        wait(pause, 0.01)
 
 
 def _skipped(name: str, missing: str) -> BenchRow:

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import subprocess
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from pluto_bt.bench.processes import process_of
 from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import NS, wait, wall_ns
 
-MOVING_MPS, PATIENCE_S = 0.1, 30.0
+MOVING_MPS, ASK_EVERY_S, PATIENCE_S = 0.1, 0.01, 30.0
+T = TypeVar("T")
 
 
 class Live(NamedTuple):
@@ -41,13 +42,12 @@ class Live(NamedTuple):
 
     def stood_ns(self) -> int:
         """When (wall) the base was last told to stand; waits until it is. Raises: TimeoutError."""
-        pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
-        while wall_ns() < until_ns:
+
+        def told_ns() -> int | None:
             told = self.tells()
-            if told["stands"]:
-                return int(told["zero_ns"])
-            wait(pause, 0.01)
-        raise TimeoutError("the robot does not stop")
+            return int(told["zero_ns"]) if told["stands"] else None
+
+        return until(told_ns, "the robot does not stop")
 
 
 @contextmanager
@@ -62,10 +62,20 @@ def drive_on(operator: Client) -> None:
     """The mission goes on, and the robot moves. Raises: TimeoutError."""
     if operator.request("mission", op="state").get("state") == "paused":
         operator.request("mission", op="resume")
-    pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
-    while wall_ns() < until_ns:
+
+    def moves() -> bool | None:
         told = operator.request("get", topic="drive/status").findtext("data") or "0"
-        if abs(float(told.split()[0])) > MOVING_MPS:
-            return
-        wait(pause, 0.02)
-    raise TimeoutError("the robot does not move")
+        return abs(float(told.split()[0])) > MOVING_MPS or None
+
+    until(moves, "the robot does not move")
+
+
+def until(ask: Callable[[], T | None], trouble: str) -> T:
+    """Ask again and again until there is an answer. Raises: TimeoutError with the words of `trouble`."""
+    pause, until_ns = threading.Event(), wall_ns() + round(PATIENCE_S * NS)
+    while wall_ns() < until_ns:
+        answer = ask()
+        if answer is not None:
+            return answer
+        wait(pause, ASK_EVERY_S)
+    raise TimeoutError(trouble)
