@@ -192,7 +192,6 @@ def read_json(text: str) -> Any:
         raise ValueError("it is nested too deeply") from None
 
 
-
 def header_of(tree: Any) -> tuple[int, str]:
     header = tree.get("header", {}) if isinstance(tree, dict) else {}
     stamp = header.get("stamp", {}) if isinstance(header, dict) else {}
