@@ -168,12 +168,15 @@ class Terminal:
         os.write(self._fd, keys.encode())
 
     def shows(self, text: str) -> None:
-        """Wait until it is on the screen. Raises: TimeoutError."""
+        """Wait until it is on the screen. Raises: TimeoutError; ConnectionError if the program ends before, with what it said."""
         until_ns = wall_ns() + round(PATIENCE_S * NS)
         while text.encode() not in self._seen:
             if not select.select([self._fd], [], [], max(0.0, (until_ns - wall_ns()) / NS))[0]:
                 raise TimeoutError(f"{text} is not on the screen")
-            self._seen += os.read(self._fd, 1 << 16)
+            try:
+                self._seen += os.read(self._fd, 1 << 16)
+            except OSError:  # nobody has the other end any more
+                raise ConnectionError(f"the program has ended: {self._seen.decode(errors='replace').strip()}") from None
 
 
 @contextmanager
