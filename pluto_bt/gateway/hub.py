@@ -11,8 +11,8 @@ from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outlets import Outlets
 from pluto_bt.gateway.places import Places
 from pluto_bt.gateway.port import RefusedError
-from pluto_bt.gateway.replies import Description
-from pluto_bt.gateway.requests import AnyRequest, Describe
+from pluto_bt.gateway.replies import Description, Ok
+from pluto_bt.gateway.requests import AnyRequest, Describe, Subscribe, Unsubscribe
 from pluto_bt.gateway.session import Session
 from pluto_bt.gateway.subscriptions import ALIASES, Flow, matches
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Gone, Refused, Up, Watch, Welcome
@@ -165,13 +165,20 @@ class Hub:
             return None
         return self._channels.newest(name)
 
-    def require_topic(self, pattern: str) -> None:
+    def _require_topic(self, pattern: str) -> None:
         """Raises: RefusedError `unknown-topic` if the pattern means no topic of this run."""
         if not any(matches(pattern, topic) for topic in self.topics):
             raise RefusedError("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self.topics) or "<describe/> lists all"}')
 
-    def joined(self, session: Session, old: dict[str, Flow], now_s: float) -> None:
-        """Watch what the session wants now, and give it what is already here; `old` = the flows it had before."""
+    def wish(self, session: Session, request: Subscribe | Unsubscribe, now_s: float) -> None:
+        """Watch what the session wants from now on, and give it what is already here. Raises: RefusedError."""
+        old = dict(session.subscriptions.flows)
+        if isinstance(request, Subscribe):
+            self._require_topic(request.topic)
+            session.subscriptions.add(request, self.topics)
+        elif not session.subscriptions.remove(request.topic):
+            raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
+        session.say(Ok(id=request.id))
         self._leave(old, session)
         self.watch()
         subscriptions = session.subscriptions

@@ -9,13 +9,14 @@ from pluto_bt.gateway import requests
 from pluto_bt.gateway.access import SCOPES, Key, may, scope_of, shown_scopes
 from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.framing import Message
+from pluto_bt.gateway.manners import Manners
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outstanding import Outstanding
 from pluto_bt.gateway.parse import parse
 from pluto_bt.gateway.places import Place
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
-from pluto_bt.gateway.replies import CAPABILITIES, AnyReply, Error, Hello, Ok, Pong, Value, with_id
+from pluto_bt.gateway.replies import CAPABILITIES, AnyReply, Error, Hello, Pong, Value, with_id
 from pluto_bt.gateway.requests import AnyRequest, Estop, Stop, acts
 from pluto_bt.gateway.stops import Stops
 from pluto_bt.gateway.subscriptions import ALIASES, Subscriptions
@@ -44,7 +45,6 @@ class Session:
         self.peer = self.name = self.session = ""
         self.subscriptions = Subscriptions(client)
         self._hub = hub
-        self._limits = hub.limits
         self._connection = Connection(hub.limits)
         self.queue = self._connection.queue  # replies that wait for `to_send`
         self._stops = Stops()
@@ -57,8 +57,7 @@ class Session:
         self._outstanding = Outstanding(hub.limits)
         self.place = Place(hub.places, client)
         self._taken_bytes = 0  # of the message that is being taken
-        self._began_s = now_s
-        self._heard_s = now_s
+        self._manners = Manners(hub.limits, now_s)
 
     @property
     def is_waiting(self) -> bool:
@@ -88,7 +87,7 @@ class Session:
 
     def taking(self, data: bytes, now_s: float) -> Iterator[None]:
         """Bytes from the client, a message each time, so that others may have their turn between two of them."""
-        self._heard_s = now_s
+        self._manners.heard(now_s)
         for message in self._connection.feed(data, now_s):
             self._take(message, now_s)
             yield
@@ -146,23 +145,13 @@ class Session:
             case requests.Describe():
                 self.say(hub.describe(request))
             case requests.Subscribe() | requests.Unsubscribe():
-                self._wish(request, now_s)
+                hub.wish(self, request, now_s)
             case requests.Get():
                 self._get(request, now_s)
             case requests.Bye():
                 self._connection.close()
             case _:
                 self._ask(request)
-
-    def _wish(self, request: requests.Subscribe | requests.Unsubscribe, now_s: float) -> None:
-        old = dict(self.subscriptions.flows)
-        if isinstance(request, requests.Subscribe):
-            self._hub.require_topic(request.topic)
-            self.subscriptions.add(request, self._hub.topics)
-        elif not self.subscriptions.remove(request.topic):
-            raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
-        self.say(Ok(id=request.id))
-        self._hub.joined(self, old, now_s)
 
     def _hello(self, request: requests.SayHello, now_s: float) -> None:
         if self._greeted:
@@ -242,8 +231,9 @@ class Session:
     def events(self, events: list[Newest], now_s: float) -> bool:
         """Events are lines like values, but none is dropped. True if this client wants them."""
         flow = self.subscriptions.flows.get("events")
-        for event in events if flow is not None else ():
-            self._connection.send(event.line(now_s, id=flow.wish.id if flow is not None else ""))
+        if flow is not None:
+            for event in events:
+                self._connection.send(event.line(now_s, id=flow.wish.id))
         return flow is not None
 
     def to_send(self, now_s: float, room_bytes: int) -> bytes:
@@ -256,10 +246,6 @@ class Session:
 
     def tick(self, now_s: float, unread_bytes: int) -> None:
         """Watch the client's manners: silence, and replies that he does not read."""
-        limits = self._limits
-        if unread_bytes > limits.backlog_bytes:
-            self.fail("slow-consumer", f"{unread_bytes} bytes of replies wait unread; expected at most {limits.backlog_bytes}")
-        elif (not self._is_known or self.is_stranger) and now_s - self._began_s >= limits.hello_s:
-            self.fail("timeout", f"expected hello within {limits.hello_s:g} s")
-        elif now_s - self._heard_s >= limits.idle_s and not self.place.is_held_up:
-            self.fail("timeout", f"no byte came for {limits.idle_s:g} s; send <ping/> now and then")
+        is_unknown = not self._is_known or self.is_stranger
+        if fault := self._manners.fault(now_s, unread_bytes, is_unknown=is_unknown, is_held_up=self.place.is_held_up):
+            self.fail(*fault)
