@@ -52,8 +52,7 @@ class Session:
         self._is_known = not hub.access.keys  # by a token, or by a certificate
         self._greeted = False
         self._answered_at = hub.batches  # how much the executive had told when it last answered: that is out of date
-        self._is_reserve = is_reserve
-        self._has_stopped = False
+        self._is_reserve, self._has_stopped = is_reserve, False
         self._outstanding = Outstanding(hub.limits)
         self.place = Place(hub.places, client)
         self._taken_bytes = 0  # of the message that is being taken
