@@ -57,22 +57,34 @@ def mark_level(
                 touched[i, j] = number
                 evidence[i, j] = min(MOST, evidence[i, j] + HIT)
         last_x, last_y, has_last = hit_x, hit_y, True
+    flat_evidence, flat_covered, flat_touched = evidence.reshape(-1), covered.reshape(-1), touched.reshape(-1)
+    places = np.zeros(max(0, int(look / SAMPLE)) + 1, dtype=np.int32)
     for k in range(ranges.shape[0]):
         r = ranges[k]
         if not r > 0.0:
             continue
         if 0 < k < ranges.shape[0] - 1:
             r = min(r, max(ranges[k - 1], ranges[k + 1]) + join)
-        c, s_ = math.cos(bearings[k]), math.sin(bearings[k])
-        for m in range(int((min(r, look) - 1.0) / SAMPLE)):
-            i, j = math.floor(x + m * SAMPLE * c), math.floor(y + m * SAMPLE * s_)
-            if not (0 <= i < size and 0 <= j < size):
+        count = max(0, int((min(r, look) - 1.0) / SAMPLE))
+        cells_along(places[:count], x, y, math.cos(bearings[k]), math.sin(bearings[k]), size)
+        for m in range(count):
+            place = places[m]
+            if place < 0:
                 break
             if m * SAMPLE < cover:
-                covered[i, j] = 1
-            if touched[i, j] != number:
-                touched[i, j] = number
-                evidence[i, j] = max(LEAST, evidence[i, j] - MISS)
+                flat_covered[place] = 1
+            if flat_touched[place] != number:
+                flat_touched[place] = number
+                flat_evidence[place] = max(LEAST, flat_evidence[place] - MISS)
+
+
+@inline_kernel
+def cells_along(places: Counts, x: float, y: float, c: float, s: float, size: int) -> None:
+    """Fill in the cells at the samples of a beam from (x, y), numbered row by row; -1 = beyond the edge. Without a branch, so it is vectorised."""
+    for m in range(places.shape[0]):
+        i, j = math.floor(x + m * SAMPLE * c), math.floor(y + m * SAMPLE * s)
+        is_inside = (i >= 0) & (i < size) & (j >= 0) & (j < size)
+        places[m] = i * size + j if is_inside else -1
 
 
 @kernel
