@@ -58,6 +58,8 @@ def see_beams(
     A beam clears only as far as its two neighbours reach too: one lost beam opens no hole in a wall. So every second beam is enough.
     """
     n = ranges_m.shape[0]
+    flat_seen, flat_level = seen.reshape(-1), stamps[LEVEL].reshape(-1)
+    places = np.zeros(max(0, int(most_m / (0.7 * CELL_M))) + 1, dtype=np.int32)
     for i in range(0, n, 2):
         free_m = ranges_m[i]
         for j in (max(i - 1, 0), min(i + 1, n - 1)):
@@ -66,21 +68,38 @@ def see_beams(
         if not free_m > 0.0:
             continue
         free_m = min(free_m - BEAM_SLACK_M, most_m)
+        if free_m < 0.0:
+            continue
+        count = int(free_m / (0.7 * CELL_M)) + 1
         c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
-        for k in range(int(free_m / (0.7 * CELL_M)) + 1):
-            along_m = min(0.7 * CELL_M * k, free_m)
-            column, row = cell_of(x_m + c * along_m, corner_x_m), cell_of(y_m + s * along_m, corner_y_m)
-            if along_m < 0.0 or not 0 <= column < seen.shape[1] or not 0 <= row < seen.shape[0]:
+        cells_along(places[:count], x_m, y_m, c, s, free_m, corner_x_m, corner_y_m, seen.shape[0], seen.shape[1])
+        for k in range(count):
+            if places[k] < 0:
                 break
-            seen[row, column] = stamp_s
-            is_older = stamps[LEVEL, row, column] > NEVER and stamps[LEVEL, row, column] < stamp_s
-            if is_older and math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
-                stamps[LEVEL, row, column] = NEVER
+            flat_seen[places[k]] = stamp_s
+            level_s = flat_level[places[k]]
+            if level_s > NEVER and level_s < stamp_s:
+                row, column = places[k] // seen.shape[1], places[k] % seen.shape[1]
+                if math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
+                    flat_level[places[k]] = NEVER
     for i in range(n):
         range_m = ranges_m[i]
         if range_m > 0.0 and range_m < most_m and believed[i] != 0.0:
             x, y = x_m + range_m * math.cos(first_rad + i * step_rad), y_m + range_m * math.sin(first_rad + i * step_rad)
             put(stamps, spots, LEVEL, corner_x_m, corner_y_m, x, y, x_m, y_m, stamp_s)
+
+
+@inline_kernel
+def cells_along(
+    places: NDArray[np.int32], x_m: float, y_m: float, c: float, s: float, free_m: float, corner_x_m: float, corner_y_m: float, rows: int,
+    columns: int,
+) -> None:  # fmt: skip
+    """Fill in the cells along a beam from (x, y) up to `free_m`, numbered row by row; -1 = beyond the edge. Without a branch, so it is vectorised."""
+    for k in range(places.shape[0]):
+        along_m = min(0.7 * CELL_M * k, free_m)
+        column, row = math.floor((x_m + c * along_m - corner_x_m) / CELL_M), math.floor((y_m + s * along_m - corner_y_m) / CELL_M)
+        is_inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        places[k] = row * columns + column if is_inside else -1
 
 
 @inline_kernel
