@@ -61,12 +61,10 @@ def see_beams(
     flat_seen, flat_level = seen.reshape(-1), stamps[LEVEL].reshape(-1)
     places = np.zeros(max(0, int(most_m / (0.7 * CELL_M))) + 1, dtype=np.int32)
     for i in range(0, n, 2):
-        free_m = ranges_m[i]
-        for j in (max(i - 1, 0), min(i + 1, n - 1)):
-            if not ranges_m[j] >= free_m:  # also NaN
-                free_m = ranges_m[j]
-        if not free_m > 0.0:
+        right_m, left_m = ranges_m[max(i - 1, 0)], ranges_m[min(i + 1, n - 1)]
+        if not (ranges_m[i] > 0.0 and right_m > 0.0 and left_m > 0.0):  # also NaN
             continue
+        free_m = min(ranges_m[i], right_m, left_m)
         free_m = min(free_m - BEAM_SLACK_M, most_m)
         if free_m < 0.0:
             continue
