@@ -108,7 +108,7 @@ def plain_beams(to: Cells, x: float, y: float, first_rad: float, step_rad: float
 @settings(max_examples=25, deadline=None)
 def test_beams_free_and_fill_the_cells_that_they_do_one_by_one(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    x, y, first_rad = *rng.uniform(-1.9, 1.9, 2).tolist(), float(rng.uniform(-3.0, 3.0))
+    x, y, first_rad = (float(rng.uniform(-most, most)) for most in (1.9, 1.9, 3.0))
     ranges = rng.uniform(0.0, 3.0) + 0.4 * np.sin(np.arange(91) / rng.uniform(1.0, 20.0)) + rng.normal(0.0, 0.05, 91)
     ranges[rng.random(91) < 0.05] = np.nan
     believed = (rng.random(91) < 0.9).astype(float)
@@ -154,13 +154,13 @@ def plain_stand(to: Cells, pose: tuple[float, float, float], grown_m: float, sin
 @settings(max_examples=30, deadline=None)
 def test_where_the_robot_stands_is_free_and_the_points_around_it_are_gathered_cell_by_cell(seed: int, grown_m: float) -> None:
     rng = np.random.default_rng(seed)
-    pose = (*rng.uniform(-0.8, 0.8, 2).tolist(), float(rng.uniform(-3.0, 3.0)))
+    x, y, theta = (float(rng.uniform(-most, most)) for most in (0.8, 0.8, 3.0))
     kernel_s, out = cells(rng), np.zeros((4000, 4))
     plain = kernel_s.copy()
     count = stand(
-        kernel_s.seen, kernel_s.stamps, kernel_s.spots, *CORNER, *pose, OUTLINE.planes, OUTLINE.reach_m, grown_m, NOW_S, 0.5, 1.4, out
+        kernel_s.seen, kernel_s.stamps, kernel_s.spots, *CORNER, x, y, theta, OUTLINE.planes, OUTLINE.reach_m, grown_m, NOW_S, 0.5, 1.4, out
     )  # fmt: skip
-    assert out[:count].tolist() == plain_stand(plain, pose, grown_m, 0.5, 1.4)
+    assert out[:count].tolist() == plain_stand(plain, (x, y, theta), grown_m, 0.5, 1.4)
     assert kernel_s.equals(plain)
 
 
@@ -208,7 +208,7 @@ def plain_arc(to: Cells, cone: Array, opening: float) -> None:
         for column in range(columns.start, columns.stop):
             dx, dy = float(x[row, column]) - cone[0], float(y[row, column]) - cone[1]
             ahead, aside, away = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(dx * dx + dy * dy)
-            if 0.0 < ahead and aside <= ahead * opening and abs(away - arc_m) < 0.75 * CELL_M and to.seen[row, column] < NOW_S:
+            if ahead > 0.0 and aside <= ahead * opening and abs(away - arc_m) < 0.75 * CELL_M and to.seen[row, column] < NOW_S:
                 was_free = to.heard[ANYHOW, row, column] > NOW_S - LATELY_S
                 share = arc_m / max(away, 1e-6)
                 put(to, LOW, cone[0] + dx * share, cone[1] + dy * share, cone[0], cone[1], NOW_S - FLEETING_S if was_free else NOW_S)
