@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 
 PRIORITY = 1
 """Of the real-time priorities the least: before every ordinary program, after all that was given one on purpose."""
@@ -22,3 +23,12 @@ def take_precedence() -> bool:
     except (AttributeError, OSError):
         return False
     return True
+
+
+def may_take_precedence() -> bool:
+    """Whether a thread of this user could; tried by a thread that ends."""
+    answers: list[bool] = []
+    thread = threading.Thread(target=lambda: answers.append(take_precedence()))
+    thread.start()
+    thread.join()
+    return answers[0]

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from pluto_bt.runtime.clock import MonotonicClock
-from pluto_bt.runtime.precedence import take_precedence
+from pluto_bt.runtime.precedence import may_take_precedence, take_precedence
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.threads import Threads
 
@@ -36,7 +36,7 @@ def policy() -> int:
 
 @pytest.fixture
 def permitted() -> None:
-    if not in_a_thread(take_precedence):
+    if not may_take_precedence():
         pytest.skip("this user may not schedule in real time (ulimit -r)")
 
 
@@ -73,4 +73,4 @@ def test_who_may_not_runs_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "sched_setscheduler", refuse)
-    assert not take_precedence()
+    assert not take_precedence() and not may_take_precedence()
