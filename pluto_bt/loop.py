@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import threading
 from collections.abc import Callable
 
@@ -10,6 +9,7 @@ from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.resume import HELD
 from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
+from pluto_bt.runtime.collector import rarely_collecting
 from pluto_bt.runtime.latch import OPERATOR_STOP
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
@@ -72,14 +72,13 @@ class Loop:
         if isinstance(system.clock, MonotonicClock):
             system.clock.restart()  # starting the gateway's process takes its time
         system.scheduler.start()
-        gc.freeze()  # what was there before lives as long as the run: walking through all of it, again and again, took 5 % of the time
         begun_ns = wall_ns()
         try:
-            self._until(self._is_over)
-            self._settle()
+            with rarely_collecting():
+                self._until(self._is_over)
+                self._settle()
         finally:
             self.wall_time_s = (wall_ns() - begun_ns) / NS
-            gc.unfreeze()
             if isinstance(system.scheduler, Threads):
                 system.scheduler.stop()
             system.executive.note_end(system.clock.now_s())
