@@ -14,7 +14,7 @@ from pluto_bt.runtime.latch import OPERATOR_STOP
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
-from pluto_bt.skills import approach, obstacles, path_following, plan_map, wall_path
+from pluto_bt.skills import approach, obstacles, path_following, plan_map, seen_space, wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
 from pluto_bt.trees.activity import PAUSED
@@ -41,6 +41,7 @@ def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
         approach.warm()
     if system.options.robot.devices.sonar is not None or system.options.robot.devices.laser is not None:
         obstacles.warm()
+        seen_space.warm()
     if with_jobs:
         system.robot.surroundings.warm()
         plan_map.warm()

@@ -113,6 +113,15 @@ def put(
 
 
 @kernel
+def put_all(
+    stamps: Array, spots: Array, layer: int, corner_x_m: float, corner_y_m: float, points: Array, from_x: float, from_y: float, stamps_s: Array
+) -> None:
+    """Note points (n, 2), each with its own stamp (n,), as `put` does."""
+    for i in range(points.shape[0]):
+        put(stamps, spots, layer, corner_x_m, corner_y_m, points[i, X], points[i, Y], from_x, from_y, stamps_s[i])
+
+
+@kernel
 def place_cones(axes: Array, leaves_m: Array, heard_m: Array, rounds: int, x_m: float, y_m: float, theta_rad: float, cones: Array) -> None:
     """The cones of a round as `hear_cones` takes them, for the robot at (x, y, theta).
 
