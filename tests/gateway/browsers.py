@@ -11,7 +11,7 @@ import pytest
 
 from pluto_bt.runtime.clock import wall_ns
 
-PATIENCE_MS = 20_000
+PATIENCE_MS = 60_000
 DESK, PHONE, ACROSS = (1440, 900), (390, 844), (844, 390)
 
 

@@ -19,7 +19,7 @@ from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 
 from .robot import FakeRobot
 
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 
 
 def whole(token: str) -> Access:
@@ -66,7 +66,7 @@ class Running:
 
     def client(self, backoff: Backoff | None = None, **given: str) -> Client:
         """A client who takes a lost line for the end, unless told when to try again."""
-        return Client(*self.address, timeout_s=20.0, backoff=backoff, **given)
+        return Client(*self.address, timeout_s=PATIENCE_S, backoff=backoff, **given)
 
     def renew(self) -> FakeRobot:
         """The robot as new, for the next test of a file that shares this gateway; its runs stay known, for one may still be watched, and its

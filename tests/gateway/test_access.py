@@ -43,7 +43,7 @@ scopes = ["watch"]
 token = "0123456789abcdef-chief"
 scopes = ["admin"]
 """
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 def people_file(folder: Path, text: str = PEOPLE) -> Path:

@@ -335,7 +335,7 @@ def test_a_connection_on_which_nobody_says_hello_is_given_up(browser: Any, runni
     page = context.new_page()
     page.route_web_socket("**/socket", meet)
     page.goto(running.url)
-    page.wait_for_function("() => document.querySelector('#link').textContent.includes('ms')", timeout=20_000)
+    page.wait_for_function("() => document.querySelector('#link').textContent.includes('ms')", timeout=60_000)
     assert len(tried) == 2
     context.close()
     running.wait_until_nobody_is_there()

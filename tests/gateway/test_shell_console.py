@@ -27,7 +27,7 @@ from pluto_bt.gateway.shell.robot import Robot
 
 from .conftest import Running
 
-PATIENCE_S = 10.0
+PATIENCE_S = 60.0
 
 
 class Screen:
