@@ -55,17 +55,11 @@ class Walker:
         return age_s <= IN_VIEW_S or (self.looked_for_s <= IN_VIEW_S and age_s <= BLINK_S and (self.vx_mps, self.vy_mps) != (0.0, 0.0))
 
     def row(self, now_s: float) -> tuple[float, ...]:
-        """What `stop_path` reckons with: the disc in which his middle must be now (x m, y m, 4: m), how it drifts, how it grows, 1 = in view.
+        """What `stop_path` reckons with: the disc in which his middle must be now (x m, y m, radius m), how it grows, 1 = in view.
 
-        Who walks in view does anything between standing still and going on, bending to either side.
+        Also who walks in view may turn on his heel: nothing is taken from where he was going.
         """
-        age_s, speed_mps = now_s - self.stamp_s, math.hypot(self.vx_mps, self.vy_mps)
-        if not self.is_in_view(now_s):
-            return self.x_m, self.y_m, 0.0, 0.0, self.spread_m(now_s), self.growth_mps, 0.0
-        if speed_mps == 0.0:
-            return self.x_m, self.y_m, 0.0, 0.0, self.spread_m(now_s), self.growth_mps, 1.0
-        drift_x, drift_y, growth_mps = 0.5 * self.vx_mps, 0.5 * self.vy_mps, 0.5 * speed_mps + UNSTEADY_MPS
-        return self.x_m + drift_x * age_s, self.y_m + drift_y * age_s, drift_x, drift_y, self.unsure_m + growth_mps * age_s, growth_mps, 1.0
+        return self.x_m, self.y_m, self.spread_m(now_s), self.growth_mps, float(self.is_in_view(now_s))
 
     def may_be(self, seen: Walker) -> bool:
         """Whether who is seen may be he."""
@@ -98,12 +92,12 @@ class Walker:
         """
         if scan.stamp_s - self.stamp_s < REFUTED_S:
             return False
-        x_m, y_m, _, _, spread_m, _, _ = self.row(scan.stamp_s)
-        window = _window(scan, laser, x_m, y_m, spread_m + BODY_M)
+        spread_m = self.spread_m(scan.stamp_s)
+        window = _window(scan, laser, self.x_m, self.y_m, spread_m + BODY_M)
         if window is None:
             return False
         beams = scan.ranges_m[window]
-        explained = (beams > math.hypot(x_m - laser[0], y_m - laser[1]) + spread_m + BODY_M) | (believed[window] == 0.0)
+        explained = (beams > math.hypot(self.x_m - laser[0], self.y_m - laser[1]) + spread_m + BODY_M) | (believed[window] == 0.0)
         bearings = laser[2] + scan.angle_min_rad + scan.angle_step_rad * np.arange(window.start, window.stop)
         end_x, end_y = laser[0] + beams * np.cos(bearings), laser[1] + beams * np.sin(bearings)
         for one in seen:

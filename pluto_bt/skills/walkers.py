@@ -1,8 +1,8 @@
 """Who walks about: the stop filter's own memory of people and other moving things, seen or gone out of sight. Frame: dead reckoning.
 
-Who is in view is thought to go on about as he does. Who stops there is thought to stay. Who went out of view may be anywhere that his legs
-can have taken him to since, for `memory_s`; what the sensors have seen to be free lately is left out by `stop_path`, which asks. Nothing is
-assumed of people who were never seen to walk.
+Everybody may be anywhere that his legs can have taken him to since he was seen: people turn on their heels. Who stops in view is thought to
+stay. Who went out of view is reckoned with for `memory_s`; what the sensors have seen to be free lately is left out for him by `stop_path`,
+which asks. Nothing is assumed of people who were never seen to walk.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.skills.movers import Mask, Movers, came_closer
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.scans_before import ScansBefore
-from pluto_bt.skills.stop_path import STRANGER
+from pluto_bt.skills.stop_path import IN_VIEW, SPREAD_M, STRANGER, WALKER_COLUMNS
 from pluto_bt.skills.walker import BODY_M, IN_VIEW_S, Walker
 
 REACH_M = 6.0  # farther away, the beams are too far apart to tell
@@ -23,7 +23,6 @@ SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
 SURE = 2  # a single sighting may be a grazed edge
 MOST_WALKERS = 12
-SPREAD, IN_VIEW, COLUMNS = 4, 6, 7  # of a row
 
 
 class WalkerWatch:
@@ -67,7 +66,7 @@ class WalkerWatch:
         self._doubted_s = stamp_s
 
     def rows(self, now_s: float) -> Array:
-        """(n, COLUMNS) of all who are known about; see `Walker.row`."""
+        """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
         return np.array(sure) if sure else NOBODY
@@ -82,7 +81,7 @@ class WalkerWatch:
         if not len(rows):
             return NO_BODY
         seen = rows[rows[:, IN_VIEW] == 1.0]
-        return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
+        return np.column_stack((seen[:, :2], seen[:, SPREAD_M] + 2.0 * BODY_M))
 
     def _meet(self, seen: list[Walker]) -> None:
         """Who of the known ones was seen again, and who is new."""
@@ -115,6 +114,6 @@ def _apart(seen: list[Walker]) -> list[Walker]:
     return kept
 
 
-NOBODY: Array = np.zeros((0, COLUMNS))
-ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, STRANGER]])  # somebody out of view, nobody knows where
+NOBODY: Array = np.zeros((0, WALKER_COLUMNS))
+ANYWHERE: Array = np.array([[0.0, 0.0, 1e6, 0.0, STRANGER]])  # somebody out of view, nobody knows where
 NO_BODY: Array = np.zeros((0, 3))
