@@ -66,7 +66,7 @@ DOOR = """<world name="door"><wall id="hall">-2,-3 14,-3 14,3 -2,3 -2,-3</wall>
 TO_THE_OTHER_SIDE = '<root BTCPP_format="4"><BehaviorTree ID="M"><MoveTo goal="12;0" timeout_s="200"/></BehaviorTree></root>'
 
 
-WHERE_AND_HOW_FAST = [("atrv2", 9.0, 0.7), ("pioneer", 4.2, 0.8), ("pioneer", 6.2, 0.5)]
+WHERE_AND_HOW_FAST = [("atrv2", 4.2, 0.5), ("atrv2", 9.0, 0.7), ("pioneer", 4.2, 0.8), ("pioneer", 6.2, 0.5)]
 
 
 @pytest.mark.parametrize(("platform", "away_m", "speed_mps"), WHERE_AND_HOW_FAST)
