@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan
+from pluto_bt.skills.approach import PERHAPS, SURELY
 from pluto_bt.skills.movers import Mask, Movers, came_closer
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.scans_before import ScansBefore
@@ -37,6 +38,7 @@ class WalkerWatch:
         self._movers = Movers()
         self._before = ScansBefore()
         self._walkers: list[Walker] = []
+        self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count only where others walk
         self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
@@ -56,8 +58,12 @@ class WalkerWatch:
         self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
-        """(n, 4) x m, y m, how far beside that he may be, and 1 = surely: who comes nearer, as `Approach` hears it."""
-        heard = [Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if is_sure else 1) for x, y, unsure_m, is_sure in places.tolist()]
+        """(n, 4) x m, y m, how far beside that he may be, and how well it is known: who comes nearer, as `Approach` hears it."""
+        self._perhaps = [one for one in self._perhaps if stamp_s - one.stamp_s < IN_VIEW_S]
+        heard: list[Walker] = []
+        for x, y, unsure_m, how in places.tolist():
+            one = Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if how == SURELY else 1)
+            (self._perhaps if how == PERHAPS else heard).append(one)
         seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
@@ -68,8 +74,10 @@ class WalkerWatch:
     def rows(self, now_s: float) -> Array:
         """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
-        sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
-        return np.array(sure) if sure else NOBODY
+        if all(one.times < SURE for one in self._walkers):
+            return NOBODY
+        self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < IN_VIEW_S]
+        return np.array([one.row(now_s) for one in (*self._walkers, *self._perhaps)])  # where one walks, less is enough to believe in another
 
     def is_anybody_about(self, now_s: float) -> bool:
         """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
