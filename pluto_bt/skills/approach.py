@@ -113,9 +113,9 @@ def moves(heard_m: Array, places: Array, axes: Array, k: int, is_small: bool, ha
         return bool(comes and total_m > NEARER_M and most_m < LEAST_EVENLY * total_m)
     sweeps_m = min(last_m, HEAR_M) * abs(places[rounds - 1, 2] - places[0, 2])
     least_m = NEARER_M + GRAZING * sweeps_m
-    if moved_m + sweeps_m < STANDING_M:
-        gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
-        return bool(gap_m > least_m)
+    gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
+    if moved_m + sweeps_m < STANDING_M and gap_m > least_m:
+        return True
     is_even = total_m > least_m and most_m < EVENLY * total_m
     return bool(is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M)
 

@@ -24,6 +24,7 @@ SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
 SURE = 2  # a single sighting may be a grazed edge
 MOST_WALKERS = 12
+PERHAPS_S = 1.0  # who is perhaps there is forgotten after so long
 
 
 class WalkerWatch:
@@ -38,7 +39,8 @@ class WalkerWatch:
         self._movers = Movers()
         self._before = ScansBefore()
         self._walkers: list[Walker] = []
-        self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count only where others walk
+        self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count only where others walk, …
+        self._about_s = -math.inf  # … or did so till now
         self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
@@ -59,7 +61,6 @@ class WalkerWatch:
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
         """(n, 4) x m, y m, how far beside that he may be, and how well it is known: who comes nearer, as `Approach` hears it."""
-        self._perhaps = [one for one in self._perhaps if stamp_s - one.stamp_s < IN_VIEW_S]
         heard: list[Walker] = []
         for x, y, unsure_m, how in places.tolist():
             one = Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if how == SURELY else 1)
@@ -74,10 +75,12 @@ class WalkerWatch:
     def rows(self, now_s: float) -> Array:
         """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
-        if all(one.times < SURE for one in self._walkers):
-            return NOBODY
-        self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < IN_VIEW_S]
-        return np.array([one.row(now_s) for one in (*self._walkers, *self._perhaps)])  # where one walks, less is enough to believe in another
+        self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
+        is_one_sure = any(one.times >= SURE for one in self._walkers)
+        if is_one_sure or (self._perhaps and now_s - self._about_s < PERHAPS_S):
+            self._about_s = now_s
+            return np.array([one.row(now_s) for one in (*self._walkers, *self._perhaps)])  # where one walks, less is enough to believe in another
+        return NOBODY
 
     def is_anybody_about(self, now_s: float) -> bool:
         """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""

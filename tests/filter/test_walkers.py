@@ -54,6 +54,15 @@ def test_a_walker_is_found_with_his_place_and_how_far_he_gets(velocity: tuple[fl
     assert math.hypot(*velocity) <= rows[0, GROWTH_MPS] <= 1.25 * math.hypot(*velocity) + 0.6, "he may hurry, and turn on his heel"
 
 
+@pytest.mark.parametrize("beside_m", [0.3, 0.4, 0.5])
+def test_who_walks_along_a_wall_is_found_though_he_hangs_together_with_it(beside_m: float) -> None:
+    wall = Shape("wall", "wall", np.array([(4.0, -2.5), (1.5, -0.4), (1.5, 0.4)]))
+    along = np.array([(4.0 - 2.5 * t, -2.5 + 2.1 * t) for t in np.linspace(0.2, 1.0, 14)]) + beside_m * np.array([-0.64, 0.77])
+    watch, now_s = watched([tuple(place) for place in along.tolist()], [(0.0, 0.0, 0.0)] * 14, wall)
+    rows = watch.rows(now_s)
+    assert len(rows) and math.dist(rows[-1, :2], along[-1]) < 0.4
+
+
 def test_where_one_left_the_view_somebody_may_be_anywhere_for_a_while() -> None:
     walk = [(1.2 - 0.2 * k, 1.5) for k in range(14)]
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 14)
@@ -212,7 +221,19 @@ def test_who_is_perhaps_there_counts_where_another_walks_and_only_for_a_moment()
     watch.take_echoes(perhaps, 0.0)
     assert not watch.is_anybody_about(0.0)
     watch.take_echoes(surely, 0.1)
-    assert len(watch.rows(0.1)) == 2 and len(watch.rows(0.7)) == 1
+    assert len(watch.rows(0.1)) == 2 and len(watch.rows(1.1)) == 1
+
+
+def test_who_is_perhaps_there_goes_on_to_count_when_the_others_are_forgotten() -> None:
+    watch = WalkerWatch(3.0)
+    perhaps, surely = np.array([[0.5, -0.8, 0.2, PERHAPS]]), np.array([[4.0, 0.0, 0.2, SURELY]])
+    watch.take_echoes(surely, 0.0)
+    for k in range(60):
+        watch.take_echoes(perhaps, 0.1 * k)
+        assert watch.is_anybody_about(0.1 * k)
+    assert not watch.is_anybody_about(7.0)
+    watch.take_echoes(perhaps, 7.0)
+    assert not watch.is_anybody_about(7.0), "alone it proves nothing"
 
 
 def test_a_wall_that_the_robot_drives_at_is_not_somebody() -> None:
