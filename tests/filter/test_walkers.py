@@ -54,13 +54,13 @@ def test_a_walker_is_found_with_his_place_and_how_far_he_gets(velocity: tuple[fl
     assert math.hypot(*velocity) <= rows[0, GROWTH_MPS] <= 1.25 * math.hypot(*velocity) + 0.6, "he may hurry, and turn on his heel"
 
 
-@pytest.mark.parametrize("beside_m", [0.3, 0.4, 0.5])
-def test_who_walks_along_a_wall_is_found_though_he_hangs_together_with_it(beside_m: float) -> None:
-    wall = Shape("wall", "wall", np.array([(4.0, -2.5), (1.5, -0.4), (1.5, 0.4)]))
-    along = np.array([(4.0 - 2.5 * t, -2.5 + 2.1 * t) for t in np.linspace(0.2, 1.0, 14)]) + beside_m * np.array([-0.64, 0.77])
-    watch, now_s = watched([tuple(place) for place in along.tolist()], [(0.0, 0.0, 0.0)] * 14, wall)
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_who_comes_along_beside_the_end_of_a_wall_is_seen_though_he_hangs_together_with_it(side: float) -> None:
+    wall = Shape("wall", "wall", np.array([(2.2, -1.0 * side), (2.2, -0.2 * side)]))
+    walk = [(2.9 - 0.1 * k, 0.0) for k in range(9)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 9, wall)
     rows = watch.rows(now_s)
-    assert len(rows) and math.dist(rows[-1, :2], along[-1]) < 0.4
+    assert rows[0, IN_VIEW] == 1.0 and math.dist(rows[0, :2], walk[-1]) < 0.3 and rows[0, SPREAD_M] < 0.1
 
 
 def test_where_one_left_the_view_somebody_may_be_anywhere_for_a_while() -> None:
