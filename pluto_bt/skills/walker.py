@@ -13,6 +13,7 @@ from pluto_bt.skills.outline import Array, Planar
 
 IN_VIEW_S = 0.6  # after so long without being seen he is out of view …
 BLINK_S = 4.0  # … or after so long in which no level scan looked for him
+LOST_S = 1.5  # who went behind something so short a time ago may come out again at once: ground that is seen to be free does not stop him
 GLANCE_S = 0.5  # a look away for so short a time does not count for one who stands
 SAME_M = 0.4  # who is seen where somebody can have come to since, give or take this, is the same one
 BODY_M = 0.3
@@ -52,14 +53,20 @@ class Walker:
     def is_in_view(self, now_s: float) -> bool:
         """Whether he was seen just now; a laser that looks down for a moment does not lose him."""
         age_s = now_s - self.walked_s
-        return age_s <= IN_VIEW_S or (self.looked_for_s <= IN_VIEW_S and age_s <= BLINK_S and (self.vx_mps, self.vy_mps) != (0.0, 0.0))
+        return age_s <= IN_VIEW_S or (self.looked_for_s <= IN_VIEW_S and age_s <= BLINK_S and self._was_seen)
+
+    @property
+    def _was_seen(self) -> bool:
+        """Whether a laser saw him walk; who was only heard has no velocity."""
+        return (self.vx_mps, self.vy_mps) != (0.0, 0.0)
 
     def row(self, now_s: float) -> tuple[float, ...]:
-        """What `stop_path` reckons with: the disc in which his middle must be now (x m, y m, radius m), how it grows, 1 = in view.
+        """What `stop_path` reckons with: the disc in which his middle must be now (x m, y m, radius m), how it grows, 1 = in view or lost just now.
 
         Also who walks in view may turn on his heel: nothing is taken from where he was going.
         """
-        return self.x_m, self.y_m, self.spread_m(now_s), self.growth_mps, float(self.is_in_view(now_s))
+        is_near = self.is_in_view(now_s) or (self._was_seen and now_s - self.walked_s <= LOST_S)
+        return self.x_m, self.y_m, self.spread_m(now_s), self.growth_mps, float(is_near)
 
     def may_be(self, seen: Walker) -> bool:
         """Whether who is seen may be he."""

@@ -66,7 +66,8 @@ def test_who_comes_along_beside_the_end_of_a_wall_is_seen_though_he_hangs_togeth
 def test_where_one_left_the_view_somebody_may_be_anywhere_for_a_while() -> None:
     walk = [(1.2 - 0.2 * k, 1.5) for k in range(14)]
     watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 14)
-    near, far = watch.rows(now_s), watch.rows(now_s + 5.0)
+    near, far = watch.rows(now_s + 2.0), watch.rows(now_s + 7.0)
+    assert watch.rows(now_s)[0, IN_VIEW] == 1.0, "he may come back at once"
     assert near[0, IN_VIEW] == far[0, IN_VIEW] == 0.0
     assert 4.0 < far[0, SPREAD_M] - near[0, SPREAD_M] < 9.0, "five seconds at about a metre a second"
     assert watch.is_anybody_about(now_s + 25.0)
