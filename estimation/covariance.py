@@ -48,20 +48,6 @@ def stepped(P: Covariance, dx_m: float, dy_m: float, heading_rad: float, distanc
     )
 
 
-def rotated(P: Covariance, angle_rad: float) -> Covariance:
-    """The same covariance seen from a frame in which everything is turned by `angle_rad`."""
-    xx, xy, xt, yy, yt, tt = P
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
-    return (
-        c * c * xx - 2.0 * c * s * xy + s * s * yy,
-        c * s * (xx - yy) + (c * c - s * s) * xy,
-        c * xt - s * yt,
-        s * s * xx + 2.0 * c * s * xy + c * c * yy,
-        s * xt + c * yt,
-        tt,
-    )
-
-
 def blended(a: Covariance, b: Covariance, share: float) -> Covariance:
     """Element by element between two covariances; stays positive semi-definite."""
     rest = 1.0 - share

@@ -51,7 +51,7 @@ class Moments:
         lines = [self._line(topic, t_s) for topic in self._samples if topic not in FROM_TICKS]
         if number >= 0:
             now = self._box.now(number)
-            lines += [*_of_ticks(self._box, now, t_s), self._pose(now, t_s), self._why(now)]
+            lines += [*_of_ticks(now, t_s), self._pose(now, t_s), self._why(now)]
         return b"".join([*lines, *self._events(t_s)])
 
     def scenery(self, shown: str) -> Scenery:
@@ -97,7 +97,7 @@ class Moments:
         return _value("Localization/Pose", pose, now.number, t_s - now.tick.t_s)
 
     def _why(self, now: Now) -> bytes:
-        answer = explain(view_of(self._box, now))
+        answer = explain(view_of(now))
         return encode(Why(is_moving=answer.is_moving, causes=tuple(Cause(*cause) for cause in answer.causes)))
 
     def _events(self, t_s: float) -> Iterator[bytes]:
@@ -123,7 +123,7 @@ class Moments:
         return [(event.stamp_s, event.level, event.text) for event in events if isinstance(event, Event) and event.level != "info"]
 
 
-def _of_ticks(box: Box, now: Now, t_s: float) -> list[bytes]:
+def _of_ticks(now: Now, t_s: float) -> list[bytes]:
     """The trees at work and the state of the mission, from the ticks."""
     rows = [
         NodeState(row.path, row.kind, row.name, row.depth, status, feedback, since_ns / 1e9)

@@ -179,6 +179,7 @@ class Playback:
         command = ticket.command
         self._posted.append(Posted(to, command.flags, command.position, command.velocity, ticket.refused))
 
+
 def _inputs(box: Box, files: Path, mission: Path, nodes: Sequence[type]) -> Inputs:
     """What the run was made of, read from the unpacked files."""
     run = box.run

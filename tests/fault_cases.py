@@ -10,7 +10,6 @@ import math
 from dataclasses import dataclass
 
 T_S = 5.0
-FOR_EVER = 0.0
 GOES_ON = math.inf
 HALL = """<world name="hall" seed="1">
   <wall id="fence">-6,-4 6,-4 6,4 -6,4 -6,-4</wall> <circle id="post" x="0.5" y="0.2" r="0.15"/> <polygon id="crate">3,-2 4,-2 4,-1 3,-1</polygon>

@@ -255,6 +255,11 @@ def test_an_empty_sarif_log_is_a_log(capsys: pytest.CaptureFixture[str]) -> None
 @pytest.mark.parametrize(("body", "platform", "faults"), [
     ('<MoveTo goal="6;5"/>', "jbot", ["2:1 error no-device"]),
     ('<Fallback><Follow/><GoTo goal="6;5"/></Fallback>', "jbot", ["2:11 warning no-device"]),
+    ('<RoundRobin><Follow/><GoTo goal="6;5"/></RoundRobin>', "jbot", ["2:13 warning no-device"]),
+    ('<Precondition if="1 == 2" else="SUCCESS"><Follow/></Precondition>', "jbot", ["2:42 warning no-device"]),
+    ('<Parallel failure_count="2"><Follow/><Say text="a"/></Parallel>', "jbot", ["2:29 warning no-device"]),
+    ('<Parallel><Follow/><Say text="a"/></Parallel>', "jbot", ["2:11 error no-device"]),
+    ('<Delay delay_msec="10"><Timeout msec="900"><Follow/></Timeout></Delay>', "jbot", ["2:44 error no-device"]),
     ('<Follow _skipIf="1 == 2"/>', "jbot", ["2:1 warning no-device"]),
     ('<WallFollow/>', "jbot", []),
     ('<WallFollow/>', "car", ["2:1 error no-device"]),
@@ -278,6 +283,15 @@ def test_a_leg_begins_where_the_one_to_a_named_goal_ended(capsys: pytest.Capture
     body = '<NavigateTo goal="gate"/><NavigateTo goal="6;5"/><NavigateTo goal="gate"/>'
     _, answer = checked(capsys, body)
     assert [leg["start"] for leg in answer["legs"]] == [[2, 5], [12, 2], [6, 5]] and all(leg["distance_m"] for leg in answer["legs"])
+
+
+def test_a_tree_that_is_used_twice_is_told_by_the_worse_use(capsys: pytest.CaptureFixture[str]) -> None:
+    visit = '<SubTree ID="Visit"/>'
+    text = MISSION.format(body=f"<Sequence><Fallback>{visit}<AlwaysSuccess/></Fallback>{visit}</Sequence>")
+    Path("m.xml").write_text(text.replace("</root>", '<BehaviorTree ID="Visit"><Follow/></BehaviorTree></root>'), encoding="utf-8")
+    main(["check", "m.xml", "--format", "json", "--platform", "jbot"])
+    found = [fault for fault in json.loads(capsys.readouterr().out)["faults"] if fault["code"] == "no-device"]
+    assert [fault["severity"] for fault in found] == ["error"]
 
 
 @pytest.mark.parametrize(("fault", "platform", "found"), [

@@ -11,9 +11,17 @@ from hypothesis import strategies as st
 from slow_rays import slow_walk
 
 from pluto_bt.maps.free_squares import INSIDE, LONGEST, free_squares
-from pluto_bt.maps.grid_rays import grid_ranges
+from pluto_bt.maps.grid_rays import grid_range
+from pluto_bt.maps.kernel import kernel
 
 REACH = 50.0
+
+
+@kernel
+def grid_ranges(free, x, y, directions, reach, out):
+    """`grid_range` along each of the (n, 2) unit directions; it is only there to be built into other kernels."""
+    for i in range(directions.shape[0]):
+        out[i] = grid_range(free, x, y, directions[i, 0], directions[i, 1], reach)
 
 
 def ranges(occupied, x, y, angles, reach=REACH):

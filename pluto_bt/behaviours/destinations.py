@@ -7,18 +7,16 @@ Several: "1,2;3,4,90;dock", or "stamp;frame" and then nine parts for each.
 
 from __future__ import annotations
 
-import json
 import math
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
 
-from pluto_bt.maps.numbers import MAX_METRES
+from pluto_bt.behaviours.pose_text import POSE_PARTS, finite, header_of, member, metres, pose_of_json, pose_of_parts, read_json
 from pluto_bt.maps.world import World
 
 _NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-POSE_PARTS: Final = 9
 HOME: Final = "home"
 
 
@@ -45,8 +43,8 @@ class Destination:
         if len(parts) == POSE_PARTS and all(map(_NUMBER.fullmatch, (parts[0], *parts[2:]))):
             return _one_of_parts(parts)
         if len(parts) in (2, 3) and all(map(_NUMBER.fullmatch, parts)):
-            numbers = [_finite(part) for part in parts]
-            return cls(_metres(numbers[0]), _metres(numbers[1]), numbers[2] if len(numbers) == 3 else None)
+            numbers = [finite(part) for part in parts]
+            return cls(metres(numbers[0]), metres(numbers[1]), numbers[2] if len(numbers) == 3 else None)
         if len(parts) == 1 and parts[0] and not _NUMBER.fullmatch(parts[0]):
             return cls(name=parts[0])
         raise ValueError(f"expected {cls.TEXT_FORM}")
@@ -55,7 +53,7 @@ class Destination:
     def from_value(cls, value: object) -> Destination:
         """A point or pose that another node wrote as numbers. Raises ValueError."""
         if isinstance(value, (tuple, list)) and len(value) in (2, 3) and all(isinstance(part, (int, float)) for part in value):
-            return cls(_metres(value[0]), _metres(value[1]), float(value[2]) if len(value) == 3 else None)
+            return cls(metres(value[0]), metres(value[1]), float(value[2]) if len(value) == 3 else None)
         raise ValueError(f"expected {cls.TEXT_FORM}")
 
     @property
@@ -147,27 +145,6 @@ class Destinations(Sequence[Destination]):
         return Destinations(tuple(items), self.stamp_ns, self.frame)
 
 
-def yaw_deg(x: float, y: float, z: float, w: float) -> float:
-    """The heading of a quaternion."""
-    return math.degrees(math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
-
-
-def pose_of_parts(parts: Sequence[str]) -> tuple[int, str, float, float, float]:
-    """Stamp in ns, frame, x, y, heading in degrees of the nine parts of a pose. Raises ValueError."""
-    if len(parts) != POSE_PARTS:
-        raise ValueError(f"a pose has {POSE_PARTS} parts, not {len(parts)}")
-    x, y, _, qx, qy, qz, qw = (_finite(part) for part in parts[2:])
-    return int(_finite(parts[0])), parts[1].strip(), _metres(x), _metres(y), yaw_deg(qx, qy, qz, qw)
-
-
-def pose_of_json(tree: Any) -> tuple[int, str, float, float, float]:
-    """The same of a PoseStamped in JSON. Raises ValueError."""
-    pose = member(tree, "pose")
-    position, turn = member(pose, "position"), member(pose, "orientation")
-    x, y = (_metres(member(position, axis)) for axis in "xy")
-    return (*header_of(tree), x, y, yaw_deg(*(_finite(member(turn, part)) for part in "xyzw")))
-
-
 def _one_of_parts(parts: Sequence[str]) -> Destination:
     stamp_ns, frame, x_m, y_m, theta_deg = pose_of_parts(parts)
     return Destination(x_m, y_m, theta_deg, "", stamp_ns, frame)
@@ -182,40 +159,3 @@ def _one_of_item(item: object) -> Destination:
     if isinstance(item, Destination):
         return item
     return Destination.from_text(item) if isinstance(item, str) else Destination.from_value(item)
-
-
-def read_json(text: str) -> Any:
-    """What stands behind `json:`. Raises ValueError."""
-    try:
-        return json.loads(text[5:])
-    except RecursionError:
-        raise ValueError("it is nested too deeply") from None
-
-
-
-def header_of(tree: Any) -> tuple[int, str]:
-    header = tree.get("header", {}) if isinstance(tree, dict) else {}
-    stamp = header.get("stamp", {}) if isinstance(header, dict) else {}
-    frame = header.get("frame_id", "") if isinstance(header, dict) else ""
-    sec, nanosec = (stamp.get(part, 0) for part in ("sec", "nanosec")) if isinstance(stamp, dict) else (0, 0)
-    return int(_finite(sec)) * 10**9 + int(_finite(nanosec)), str(frame)
-
-
-def member(tree: Any, name: str) -> Any:
-    if not isinstance(tree, dict) or name not in tree:
-        raise ValueError(f'the JSON has no "{name}" where one is needed')
-    return tree[name]
-
-
-def _finite(part: object) -> float:
-    value = float(part) if isinstance(part, (int, float, str)) else math.nan
-    if not math.isfinite(value):
-        raise ValueError(f"{part} is no finite number")
-    return value
-
-
-def _metres(part: object) -> float:
-    value = _finite(part)
-    if abs(value) > MAX_METRES:
-        raise ValueError(f"no place is beyond {MAX_METRES:g} m, and {part} is")
-    return value

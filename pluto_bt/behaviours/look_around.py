@@ -61,7 +61,7 @@ class WristTour(RobotLeaf):
     def _is_seen(self, robot: Robot, now_s: float) -> bool:
         state, scan = robot.newest("wrist/state"), robot.newest("sick/scan")
         target = self._targets[self._next]
-        at = state.position if isinstance(state, ActuatorState) else (0.0, 0.0)  # without a wrist the laser always looks ahead
+        at = state.position if isinstance(state, ActuatorState) else AHEAD  # without a wrist the laser always looks ahead
         is_there = max(abs(at[i] - target[i]) for i in (0, 1)) < THERE_RAD
         if is_there and self._there_s == math.inf:
             self._there_s = now_s
@@ -85,16 +85,21 @@ class LookAround(WristTour):
     }
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
+    def initialise(self) -> None:
+        """Nothing is held yet."""
+        super().initialise()
+        self._held_s = -math.inf
+
     def targets(self) -> list[Pair]:
         """The sides, the ground, and ahead."""
         wrist = self.robot.platform.devices.wrist if self.robot is not None else None
         if wrist is None or self.get_input("side") == "none":
-            return [(0.0, 0.0)]
+            return [AHEAD]
         pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
         side = self.get_input("side")
         panned = [(angle, 0.0) for angle, word in ((pan, "left"), (-pan, "right")) if side in (word, "both")]
-        return [*panned, (0.0, tilt), (0.0, 0.0)]
+        return [*panned, (0.0, tilt), AHEAD]
 
     def act(self, robot: Robot) -> Status:
         """Stand, look, done."""
@@ -107,12 +112,6 @@ class LookAround(WristTour):
     def _moves(self, robot: Robot) -> bool:
         raw = robot.newest("ATRV2/Drive/Raw")
         return isinstance(raw, ActuatorState) and (abs(raw.velocity[0]) > STILL_MPS or abs(raw.velocity[1]) > STILL_RADPS)
-
-
-    def initialise(self) -> None:
-        """Nothing is held yet."""
-        super().initialise()
-        self._held_s = -math.inf
 
     def _hold(self, robot: Robot) -> None:
         """Command the robot to stand, again and again, so that drive does not time out."""
@@ -149,7 +148,7 @@ class SweepWrist(WristTour):
         down = [(0.0, tilt)] if tilt > 0.0 else []
         if self.now_s() - self._walker_s < AMONG_PEOPLE_S:
             return [*down, *[AHEAD] * LOOKS_AHEAD]
-        return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, (0.0, 0.0)]
+        return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, AHEAD]
 
     def act(self, robot: Robot) -> Status:
         """One round after the other."""

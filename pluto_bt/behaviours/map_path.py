@@ -9,7 +9,8 @@ from typing import Any, ClassVar, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.behaviours.destinations import POSE_PARTS, Destination, header_of, member, pose_of_json, pose_of_parts, read_json
+from pluto_bt.behaviours.destinations import Destination
+from pluto_bt.behaviours.pose_text import POSE_PARTS, header_of, member, pose_of_json, pose_of_parts, read_json
 
 Array = NDArray[np.float64]
 FRAME: Final = "map"

@@ -16,7 +16,7 @@ from pluto_bt.source import did_you_mean
 TICKING: Final = "executive"  # it runs the mission that would stop it
 
 
-class ModuleOrder(RobotLeaf):
+class ModuleOrder(RobotLeaf, register=False):  # its two children are the nodes
     """What both have in common."""
 
     RUNS: ClassVar[bool]

@@ -68,15 +68,12 @@ class FindPath(RobotLeaf):
         self._start_s, self._next_s = self.now_s(), -math.inf
 
     def act(self, robot: Robot) -> Status:
-        """Answers at once, unless it has to wait for a pose."""
-        around = robot.surroundings
-        if not around.look(robot, self.now_s()):
-            doubt = pose_doubt(robot)
-            text, is_over = doubt.text or "it is not known where the robot is", self.now_s() - self._start_s >= WAITING["no-pose"]
-            return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
-        if self.now_s() < self._next_s:
+        """Answers at once, unless it has to wait: for a pose, or for somebody who is in the way."""
+        around, now_s, goal = robot.surroundings, self.now_s(), goal_of(self)
+        if not around.look(robot, now_s):
+            return self._wait_for_a_pose(robot, now_s)
+        if now_s < self._next_s:
             return self.wait(PEOPLE)
-        goal = goal_of(self)
         if self._next_s == -math.inf:
             around.openings.turn()
         if goal is not None and is_near(around, goal):
@@ -84,26 +81,40 @@ class FindPath(RobotLeaf):
             return self.succeed("the goal is near")
         self._set_output("near", False)
         around.way = around.find(goal)
-        now_s = self.now_s()
-        if around.way is None and goal is not None:
-            behind = around.find_behind_walkers(goal, now_s)
-            if around.await_passers_by(now_s) if behind is None else now_s - self._start_s < PATIENCE_S:
-                self._next_s = now_s + AGAIN_S
-                return self.wait(PEOPLE)
-            around.way = behind
+        if around.way is None and goal is not None and self._awaits_somebody(around, goal, now_s):
+            return self.wait(PEOPLE)
         if around.way is not None and not around.sees_walkers(now_s) and not around.headway.decide(around.robot[:2]):
             if goal is not None:
                 return self.fail("stuck", "one path after the other ends here")
             x_m, y_m = around.way.points[-1].tolist()
             around.map.give_up(x_m, y_m, ray.END_M)
             around.way = around.find(goal)
-        self._set_output("found", around.way is not None)
-        if around.way is None:
+        return self._tell(around, goal)
+
+    def _wait_for_a_pose(self, robot: Robot, now_s: float) -> Status:
+        doubt = pose_doubt(robot)
+        text, is_over = doubt.text or "it is not known where the robot is", now_s - self._start_s >= WAITING["no-pose"]
+        return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
+
+    def _awaits_somebody(self, around: Surroundings, goal: Pair, now_s: float) -> bool:
+        """Where no way is left: True while somebody in it may walk on. After `PATIENCE_S` the robot takes the way up to him, if there is one."""
+        behind = around.find_behind_walkers(goal, now_s)
+        if around.await_passers_by(now_s) if behind is None else now_s - self._start_s < PATIENCE_S:
+            self._next_s = now_s + AGAIN_S
+            return True
+        around.way = behind
+        return False
+
+    def _tell(self, around: Surroundings, goal: Pair | None) -> Status:
+        """What was found."""
+        way = around.way
+        self._set_output("found", way is not None)
+        if way is None:
             return self.succeed("all that can be reached is explored") if goal is None else self.fail("no-path", "every way is blocked")
-        if goal is not None and around.way.leads_there and ray.is_done(around.way, around.robot, around.map.cell_m):
+        if goal is not None and way.leads_there and ray.is_done(way, around.robot, around.map.cell_m):
             self._set_output("near", True)
             return self.succeed("no path leads nearer to the goal")
-        return self.succeed(f"a path of {around.way.length_m:.1f} m")
+        return self.succeed(f"a path of {way.length_m:.1f} m")
 
 
 class FollowRay(MotionLeaf):

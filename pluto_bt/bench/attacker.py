@@ -20,7 +20,6 @@ from pluto_bt.runtime.clock import NS, wait, wall_ns
 CHUNK = 64 * 1024
 GIGABYTE = 1 << 30
 BOMB = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10 if i else "lol"}">' for i in range(10))
-UNTIL_S = [0.0]
 
 
 def begin(attack: str, port: int, seconds: float) -> subprocess.Popen[str]:
@@ -89,11 +88,11 @@ def new_name() -> bytes:
     return b"<" + name + b"><!-- --></" + name + b">"
 
 
-def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]:
-    """Send a stream again and again."""
+def shout(stream: Callable[[], Iterator[bytes]], port: int, until_s: float) -> dict[str, object]:
+    """Send a stream again and again, `until_s` of the wall."""
     cuts, most, longest_s = 0, 0, 0.0
     codes: set[str] = set()
-    while now_s() < UNTIL_S[0] or not cuts:
+    while now_s() < until_s or not cuts:
         begun_s, sent, heard = now_s(), 0, bytearray()
         with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=10.0) as connection:
             try:
@@ -111,10 +110,10 @@ def shout(stream: Callable[[], Iterator[bytes]], port: int) -> dict[str, object]
     return {"cuts": cuts, "codes": sorted(codes), "most_bytes": most, "longest_s": round(longest_s, 2)}
 
 
-def crowd(port: int, count: int, each: Callable[[socket.socket], None]) -> dict[str, object]:
+def crowd(port: int, until_s: float, count: int, each: Callable[[socket.socket], None]) -> dict[str, object]:
     """So many connections at once; `each` is done with every one of them again and again."""
     connections: list[socket.socket] = []
-    while now_s() < UNTIL_S[0]:
+    while now_s() < until_s:
         while len(connections) < count:
             with contextlib.suppress(OSError):
                 connections.append(socket.create_connection(("127.0.0.1", port), timeout=5.0))
@@ -140,19 +139,19 @@ def never_read(connection: socket.socket) -> None:
     connection.send(b'<subscribe topic="*"/><describe/><modules/><log/>' * 5)
 
 
-def storm(port: int) -> dict[str, object]:
+def storm(port: int, until_s: float) -> dict[str, object]:
     """Connect and go, as fast as can be."""
     cuts = 0
-    while now_s() < UNTIL_S[0]:
+    while now_s() < until_s:
         with contextlib.suppress(OSError):
             socket.create_connection(("127.0.0.1", port), timeout=5.0).close()
             cuts += 1
     return {"cuts": cuts, "codes": [], "most_bytes": 0, "longest_s": 0.0}
 
 
-def burn(port: int) -> dict[str, object]:
+def burn(port: int, until_s: float) -> dict[str, object]:
     """No attack: a program that only needs the processor."""
-    while now_s() < UNTIL_S[0]:
+    while now_s() < until_s:
         hashlib.sha256(bytes(CHUNK)).digest()
     return {}
 
@@ -167,14 +166,13 @@ CROWDS: dict[str, tuple[int, Callable[[socket.socket], None]]] = {
 
 def main() -> None:
     """One attack."""
-    name, port = sys.argv[1], int(sys.argv[2])
-    UNTIL_S[0] = now_s() + float(sys.argv[3])
+    name, port, until_s = sys.argv[1], int(sys.argv[2]), now_s() + float(sys.argv[3])
     if name in STREAMS:
-        told = shout(STREAMS[name], port)
+        told = shout(STREAMS[name], port, until_s)
     elif name in CROWDS:
-        told = crowd(port, *CROWDS[name])
+        told = crowd(port, until_s, *CROWDS[name])
     else:
-        told = {"storm": storm, "burn": burn}[name](port)
+        told = {"storm": storm, "burn": burn}[name](port, until_s)
     print(json.dumps(told))
 
 

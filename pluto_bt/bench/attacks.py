@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
 import threading
 from collections.abc import Iterator
-from typing import Any, NamedTuple
 
 import numpy as np
 
 from pluto_bt.bench.attacker import CROWDS, STREAMS, begin
-from pluto_bt.bench.fanout import process_of
+from pluto_bt.bench.live import Live, drive_on, on_patrol
 from pluto_bt.bench.resident import resident_mb
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.gateway.client import Client
-from pluto_bt.runtime.clock import NS, wait, wall_ns
+from pluto_bt.runtime.clock import wait, wall_ns
 
 FLOODS = ("pings", "stops", "gets", "describes", "new-names")
 ENDLESS = ("attribute", "text", "name", "comment", "white-space", "mission", "attributes", "depth", "mission-depth")
@@ -24,33 +21,12 @@ GROUPS = {
     "rubbish and bombs": tuple(name for name in STREAMS if name not in (*ENDLESS, *FLOODS)),
 }  # fmt: skip
 GROUP_S, PING_EVERY_S, SETTLE_S = 12.0, 0.006, 3.0
-TRIALS, MOVING_MPS, PATIENCE_S = 150, 0.1, 30.0
-
-
-class Live(NamedTuple):
-    """A robot on patrol in a process of its own, and how to ask it."""
-
-    process: subprocess.Popen[bytes]
-    port: int
-
-    def tells(self) -> dict[str, Any]:
-        """What `live_robot` knows."""
-        assert self.process.stdin is not None and self.process.stdout is not None
-        self.process.stdin.write(b"\n")
-        self.process.stdin.flush()
-        told: dict[str, Any] = json.loads(self.process.stdout.readline())
-        return told
-
-    def client(self, name: str) -> Client:
-        """A client of its gateway."""
-        return Client(port=self.port, timeout_s=PATIENCE_S, name=name)
+TRIALS = 150
 
 
 def run() -> Iterator[BenchRow]:
     """All rows."""
-    with process_of("-m", "pluto_bt.bench.live_robot") as process:
-        assert process.stdout is not None
-        live = Live(process, int(process.stdout.readline()))
+    with on_patrol() as live:
         with live.client(name="operator") as polite:
             pings_ms(live, polite, "never-read", 1.0)  # what is taken once and kept
             before_mb = settled_mb(live, polite)
@@ -101,7 +77,7 @@ def _stops(live: Live) -> Iterator[BenchRow]:
                 drive_on(operator)
                 stopped_ns = wall_ns()
                 passer.request("stop")
-                zero_ns = stood_ns(live)
+                zero_ns = live.stood_ns()
                 if zero_ns >= stopped_ns:  # else something had stopped it just before
                     delays_ms.append((zero_ns - stopped_ns) / 1e6)
     finally:
@@ -111,27 +87,3 @@ def _stops(live: Live) -> Iterator[BenchRow]:
     note = f"{TRIALS} stops, median {float(np.median(delays_ms)):.1f} ms"
     yield BenchRow("<stop/> during a flood to a command of zero, p99", float(p99), "ms", "<= 20", note)
     yield BenchRow("<stop/> during a flood to a command of zero, worst", float(worst), "ms", "<= 100")
-
-
-def drive_on(operator: Client) -> None:
-    """The mission goes on, and the robot moves."""
-    if operator.request("mission", op="state").get("state") == "paused":
-        operator.request("mission", op="resume")
-    pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
-    while wall_ns() < until_ns:
-        told = operator.request("get", topic="drive/status").findtext("data") or "0"
-        if abs(float(told.split()[0])) > MOVING_MPS:
-            return
-        wait(pause, 0.02)
-    raise TimeoutError("the robot does not move")
-
-
-def stood_ns(live: Live) -> int:
-    """When the base was told to stand, as it is now."""
-    pause, until_ns = threading.Event(), wall_ns() + PATIENCE_S * NS
-    while wall_ns() < until_ns:
-        told = live.tells()
-        if told["stands"]:
-            return int(told["zero_ns"])
-        wait(pause, 0.01)
-    raise TimeoutError("the robot does not stop")

@@ -16,8 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-from pluto_bt.bench.attacks import PATIENCE_S, Live, drive_on, stood_ns
-from pluto_bt.bench.fanout import process_of
+from pluto_bt.bench.live import PATIENCE_S, Live, drive_on, on_patrol, until
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import NS, wait, wall_ns
@@ -36,16 +35,13 @@ def run() -> Iterator[BenchRow]:
         return
     with tempfile.TemporaryDirectory() as folder:
         ssh = Ssh(Path(folder))
-        with process_of("-m", "pluto_bt.bench.live_robot", str(ssh.keys)) as process:
-            assert process.stdout is not None
-            port, ssh.port, web = map(int, process.stdout.readline().split())
-            live = Live(process, port)
-            with live.client(name="operator") as operator:
-                yield from _clicks(live, operator, web)
-                yield from _commands(live, operator, ssh)
-                yield from _keys(live, operator, ssh)
-                drive_on(operator)
-                yield _logins(live, ssh)
+        with on_patrol(str(ssh.keys)) as live, live.client(name="operator") as operator:
+            _, ssh.port, web = live.ports
+            yield from _clicks(live, operator, web)
+            yield from _commands(live, operator, ssh)
+            yield from _keys(live, operator, ssh)
+            drive_on(operator)
+            yield _logins(live, ssh)
 
 
 class Ssh:
@@ -71,7 +67,7 @@ class Ssh:
         control = self.folder / "control"
         master = subprocess.Popen(self.words("-M", "-S", str(control), "-N", HOST), stdin=subprocess.DEVNULL)
         try:
-            _until(control.exists)
+            until(lambda: control.exists() or None, "nobody logs in")
             yield ["-S", str(control)]
         finally:
             master.terminate()
@@ -87,7 +83,7 @@ def _to_zero(name: str, target_s: float, live: Live, operator: Client, stop: Cal
         drive_on(operator)
         begun_ns = wall_ns()
         stop()
-        zero_ns = stood_ns(live)
+        zero_ns = live.stood_ns()
         if zero_ns >= begun_ns:  # else something had stopped it just before
             delays_ms.append((zero_ns - begun_ns) / 1e6)
     note = f"{TRIALS} stops, median {float(np.median(delays_ms)):.1f} ms"
@@ -172,12 +168,15 @@ class Terminal:
         os.write(self._fd, keys.encode())
 
     def shows(self, text: str) -> None:
-        """Wait until it is on the screen. Raises: TimeoutError."""
+        """Wait until it is on the screen. Raises: TimeoutError; ConnectionError if the program ends before, with what it said."""
         until_ns = wall_ns() + round(PATIENCE_S * NS)
         while text.encode() not in self._seen:
             if not select.select([self._fd], [], [], max(0.0, (until_ns - wall_ns()) / NS))[0]:
                 raise TimeoutError(f"{text} is not on the screen")
-            self._seen += os.read(self._fd, 1 << 16)
+            try:
+                self._seen += os.read(self._fd, 1 << 16)
+            except OSError:  # nobody has the other end any more
+                raise ConnectionError(f"the program has ended: {self._seen.decode(errors='replace').strip()}") from None
 
 
 @contextmanager
@@ -192,15 +191,6 @@ def _terminal(words: list[str]) -> Iterator[Terminal]:
         process.kill()
         process.wait()
         os.close(ours)
-
-
-def _until(holds: Callable[[], bool]) -> None:
-    """Raises: TimeoutError."""
-    pause, until_ns = threading.Event(), wall_ns() + round(PATIENCE_S * NS)
-    while not holds():
-        if wall_ns() > until_ns:
-            raise TimeoutError("nothing came of it")
-        wait(pause, 0.01)
 
 
 def _skipped(name: str, missing: str) -> BenchRow:

@@ -6,19 +6,18 @@ The server's processor time is that of the process that sends; delivery is from 
 from __future__ import annotations
 
 import base64
-import contextlib
 import os
 import re
 import select
 import socket
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
+from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from pluto_bt.bench.processes import cpu_s, process_of
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.silent_robot import TOPIC
 from pluto_bt.runtime.clock import NS, wall_ns
@@ -28,7 +27,6 @@ HZ, SOURCE_HZ = 10.0, 50.0
 SETTLE_S, MEASURE_S, ROUNDS = 2.0, 6.0, 2
 BASELINE = Path(os.environ.get("PLUTO_SHARED") or Path(__file__).resolve().parents[2].parent / "shared") / "bench" / "fanout_baseline.py"
 _SENT = re.compile(rb"T=(\d{19})")
-_TICKS = os.sysconf("SC_CLK_TCK")
 
 
 class Measured(NamedTuple):
@@ -61,9 +59,7 @@ def run() -> Iterator[BenchRow]:
 
 def _foxglove(mine: Measured) -> BenchRow:
     """Against foxglove-sdk, if that is installed (PYTHONPATH)."""
-    try:
-        import foxglove  # type: ignore[import-not-found,unused-ignore]  # noqa: F401  # no part of an installation: only whether it is there
-    except ImportError:
+    if find_spec("foxglove") is None:
         return BenchRow("processor time, gateway / foxglove-sdk", float("nan"), "×", "<= 0.4", "not installed: pip install foxglove-sdk")
     other = min(_baseline("foxglove", CLIENTS) for _ in range(ROUNDS))
     note = f"foxglove-sdk {1e3 * other.cpu_ms_a_value:.3g} µs, p99 {other.p99_ms:.3g} ms"
@@ -84,17 +80,6 @@ def _baseline(kind: str, clients: int) -> Measured:
         port = probe.getsockname()[1]
     with process_of(str(BASELINE), kind, str(port), f"{HZ:g}") as process:
         return _listen(port, process.pid, clients, _say_hello_websocket if kind == "foxglove" else lambda connection: None)
-
-
-@contextlib.contextmanager
-def process_of(*words: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A Python process, killed at the end."""
-    process = subprocess.Popen([sys.executable, *words], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
 
 
 def _connect(port: int) -> socket.socket:
@@ -157,9 +142,3 @@ def _read(poll: select.epoll, connections: dict[int, socket.socket], seconds: fl
             now_ns = wall_ns()
             delays += [(now_ns - int(sent)) / 1e6 for sent in _SENT.findall(data)]
     return delays
-
-
-def cpu_s(pid: int) -> float:
-    """Processor seconds of a process so far, its own and the kernel's for it."""
-    fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
-    return (int(fields[11]) + int(fields[12])) / _TICKS

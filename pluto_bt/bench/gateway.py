@@ -11,8 +11,8 @@ from collections.abc import Callable, Iterator
 
 from lxml import etree
 
-from pluto_bt.bench.attacks import Live
-from pluto_bt.bench.fanout import cpu_s, process_of
+from pluto_bt.bench.live import on_patrol
+from pluto_bt.bench.processes import cpu_s, process_of
 from pluto_bt.bench.row import BenchRow, best_pair_us
 from pluto_bt.bench.silent_robot import TOPIC
 from pluto_bt.blackboard import messages as m
@@ -125,10 +125,8 @@ def _build(topic: str, value: m.Message) -> Callable[[], bytes]:
 
 # beside a whole robot ------------------------------------------------------------------------------------------------
 def _beside_a_robot() -> Iterator[BenchRow]:
-    with process_of("-m", "pluto_bt.bench.live_robot", f"gateway.clients={2 * CLIENTS}") as process:
-        assert process.stdout is not None
-        port = int(process.stdout.readline())
-        tell = Live(process, port).tells
+    with on_patrol(f"gateway.clients={2 * CLIENTS}") as live:
+        port, tell = live.port, live.tells
         _watch(port, 0, 3.0)
         tell()
         _watch(port, 0, WATCH_S)

@@ -10,8 +10,6 @@ import importlib
 import importlib.util
 import math
 import tempfile
-import tomllib
-from importlib import resources
 from pathlib import Path
 
 import msgspec
@@ -20,6 +18,7 @@ import numpy as np
 from pluto_bt.bench.row import BenchRow, best_us
 from pluto_bt.maps.platform import Platform
 from pluto_bt.maps.world import Actor, Shape, World
+from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.runtime.clock import wall_ns
 
 STEP_S, CHUNK_S, CHUNKS = 0.02, 2.0, 20
@@ -61,8 +60,7 @@ def rectangle(id: str, x: float, y: float, width: float, depth: float) -> Shape:
 
 def robot(scans: bool) -> Platform:
     """The shipped ATRV-2 with its laser at 10 Hz, or with its base alone."""
-    tables = tomllib.loads((resources.files("pluto_bt") / "platforms" / "atrv2.toml").read_text(encoding="utf-8"))
-    platform = msgspec.convert(tables, Platform)
+    platform = load_robot_file("atrv2")
     devices = platform.devices
     if scans and devices.laser is not None:
         devices = msgspec.structs.replace(devices, laser=msgspec.structs.replace(devices.laser, rate_hz=SCAN_HZ))
@@ -75,9 +73,12 @@ class Round:
     """A robot that drives circles between house and fence, and whose records are read as they come."""
 
     def __init__(self, platform: Platform) -> None:
-        from sim import Simulator
+        from sim import BaseDevice, Simulator
 
         self.simulator = Simulator(yard(), platform, seed=1, start=(4.0, 4.0, 0.3))
+        base = self.simulator.devices["base"]
+        assert isinstance(base, BaseDevice)
+        self._base = base
         self._step = 0
 
     def step(self) -> None:
@@ -85,7 +86,7 @@ class Round:
         simulator = self.simulator
         simulator.step(self._step * STEP_S)
         self._step += 1
-        simulator.devices["base"].drive(0.5, 0.35)  # type: ignore[attr-defined]  # the base is the one device that drives
+        self._base.drive(0.5, 0.35)
         for device in simulator.devices.values():
             device.read()
 

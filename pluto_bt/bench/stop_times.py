@@ -143,11 +143,12 @@ def _trial(robot: Circling, cause: Cause, at_s: float) -> float:
 def bumper_times_s(trials: int, seed: int) -> list[float]:
     """Seconds from the last moment before a panel was pressed to a zero command: against a kerb, at random speeds, again and again."""
     rng, robot, times = np.random.default_rng(seed), Circling(hall(kerb=True), seed), list[float]()
-    depth_m = load_robot_file("atrv2").devices.bumpers.depth_m  # type: ignore[union-attr]  # an ATRV-2 has bumpers
+    bumpers = load_robot_file("atrv2").devices.bumpers
+    assert bumpers is not None
     robot.run_to(1.0)
     while len(times) < trials:
         _order(robot, float(rng.uniform(0.1, 0.6)))
-        robot.run_to(robot.now_s + 8.0, lambda: robot.system.simulator.clearance_m <= depth_m)
+        robot.run_to(robot.now_s + 8.0, lambda: robot.system.simulator.clearance_m <= bumpers.depth_m)
         pressed_s = robot.now_s - STEP_S
         robot.run_to(robot.now_s + FAULT_S, robot.is_told_to_stand)
         times.append(robot.now_s - pressed_s if robot.is_told_to_stand() else np.inf)

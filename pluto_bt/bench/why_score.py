@@ -80,7 +80,7 @@ def _questions(box: Box, broken: tuple[Broken, ...], has_failed: bool) -> Iterat
 
 def _stands(box: Box, t_s: float) -> bool:
     """True if the robot stands and a link says why."""
-    view = view_of(box, box.now(box.number_at(t_s)))
+    view = view_of(box.now(box.number_at(t_s)))
     return not view.trail.situation.moves and any(link.reason for link in view.trail.situation.links.values())
 
 

@@ -102,7 +102,7 @@ def _is_world(path: Path) -> bool:
     """True if the file's first element is `<world>`; looks at its head only."""
     unread = Faults()  # a file that cannot be read is told by whoever reads it all
     head = (read_bytes(path, str(path), unread) or b"")[:8192]
-    first = re.search(rb"<([A-Za-z_][\w.-]*)", re.sub(rb"<!--.*?-->", b"", head, flags=re.S))
+    first = re.search(rb"<([A-Za-z_][\w.-]*)", re.sub(rb"<!--.*?-->", b"", head, flags=re.DOTALL))
     return first is not None and first[1] == b"world"
 
 

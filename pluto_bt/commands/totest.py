@@ -67,6 +67,9 @@ def main(argv: list[str]) -> int:
     to = Path(args.output or f"test_{name}.py")
     try:
         write_test(box, name, to)
+    except FileExistsError as error:
+        print(f"pluto totest: {error} exists already; nothing was written (--output names another file)", file=sys.stderr)
+        return 2
     except OSError as error:
         print(f"pluto totest: cannot write {to}: {error.strerror or error}", file=sys.stderr)
         return 2
@@ -75,16 +78,23 @@ def main(argv: list[str]) -> int:
 
 
 def write_test(box: Box, name: str, to: Path) -> None:
-    """Write the test file, and beside it a folder with the box and its files. Raises: OSError."""
+    """Write the test file, and beside it a folder with the box and its files.
+
+    Raises:
+        FileExistsError: the file or its folder is there: somebody may have edited it.
+        OSError: it cannot be written.
+    """
     folder = to.with_name(f"{to.stem}_files")
-    folder.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(box.file.path, folder / "run.mcap")
-    with box.unpacked() as unpacked:
-        shutil.copytree(unpacked, folder, dirs_exist_ok=True)
     title = f"{Path(box.run.mission).name} in {Path(box.run.world).name}, {box.result.get('result', 'cut short')}"
     text = TEST.format(title=title, name=name, folder=folder.name, mission=box.run.mission)
     if box.run.mode == "lockstep" and box.result.get("result") in ("SUCCESS", "FAILURE") and not box.run.plugins:
         text += _again(box, name, folder.name)
+    for path in (to, folder):
+        if path.exists():
+            raise FileExistsError(path)
+    with box.unpacked() as unpacked:
+        shutil.copytree(unpacked, folder)
+    shutil.copyfile(box.file.path, folder / "run.mcap")
     to.write_text(text, encoding="utf-8")
 
 

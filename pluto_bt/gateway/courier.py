@@ -13,6 +13,7 @@ import msgspec
 from pluto_bt.gateway.pulse import Pulse
 from pluto_bt.gateway.wire import Alive, Down, Frames, Up, pack
 from pluto_bt.runtime.clock import wall_ns
+from pluto_bt.runtime.precedence import take_precedence
 
 READ_BYTES = 256 * 1024
 
@@ -77,6 +78,7 @@ class Courier:
             self._out.clear()  # the reader will notice the end
 
     def _move(self) -> None:
+        take_precedence()  # it brings the stops
         frames = Frames(up=True)
         # A gateway that breaks, or speaks nonsense, is gone; the link starts another.
         with contextlib.suppress(OSError, ValueError, msgspec.DecodeError):

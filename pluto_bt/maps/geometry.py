@@ -26,20 +26,6 @@ def compose(pose_ab: Pose, pose_bc: Pose) -> Pose:
     return (x_m + cos * pose_bc[0] - sin * pose_bc[1], y_m + sin * pose_bc[0] + cos * pose_bc[1], wrap_angle(theta_rad + pose_bc[2]))
 
 
-def invert(pose_ab: Pose) -> Pose:
-    """Pose of a seen from b; theta within [-pi, pi]."""
-    x_m, y_m, theta_rad = pose_ab
-    cos, sin = math.cos(theta_rad), math.sin(theta_rad)
-    return (-cos * x_m - sin * y_m, sin * x_m - cos * y_m, wrap_angle(-theta_rad))
-
-
-def transform_point(pose_ab: Pose, x_b_m: float, y_b_m: float) -> tuple[float, float]:
-    """A point given in frame b, seen from a."""
-    x_m, y_m, theta_rad = pose_ab
-    cos, sin = math.cos(theta_rad), math.sin(theta_rad)
-    return (x_m + cos * x_b_m - sin * y_b_m, y_m + sin * x_b_m + cos * y_b_m)
-
-
 def transform_points(pose_ab: Pose, points_b_m: ArrayLike) -> NDArray[np.float64]:
     """(n, 2) points given in frame b, seen from a: a new (n, 2) array. No points give no points."""
     points = np.asarray(points_b_m, dtype=np.float64).reshape(-1, 2)

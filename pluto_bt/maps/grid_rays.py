@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.maps.free_squares import INSIDE
-from pluto_bt.maps.kernel import inline_kernel, kernel
+from pluto_bt.maps.kernel import inline_kernel
 
 FAR = 1e300  # stands for 1 / 0: a ray along a line never crosses it
 NEAR_A_LINE = 1e-6  # cells; far above the rounding of a position, which is below 1e-9 in any grid that fits the memory
@@ -120,10 +120,3 @@ def grid_range(free: NDArray[np.uint8], x: float, y: float, dx: float, dy: float
         iy = cell if leaps_x else iy + way_y * side
         if ix < 0 or iy < 0 or ix >= columns or iy >= rows:
             return reach
-
-
-@kernel
-def grid_ranges(free: NDArray[np.uint8], x: float, y: float, directions: NDArray[np.float64], reach: float, out: NDArray[np.float64]) -> None:
-    """`grid_range` along each of the (n, 2) unit `directions` into `out` (n,). All in cells."""
-    for i in range(directions.shape[0]):
-        out[i] = grid_range(free, x, y, directions[i, 0], directions[i, 1], reach)

@@ -104,17 +104,6 @@ class Scene:
 
     # what it answers
 
-    def is_present(self, id: str) -> bool:
-        """Whether a shape or actor is there."""
-        if id in self._actors:
-            return bool(self._discs[self._actors[id][0], DISC_RADIUS] >= 0.0)
-        _ = self._shapes[id]
-        return id in self._stands
-
-    def outline_of(self, id: str) -> Points:
-        """(n, 2) points of a shape where it stands now, also of one that is absent (then where the file drew it); of a circle, its centre."""
-        return self._stands.get(id, self._shapes[id][1].points)
-
     def scan(self, pose_map_laser: Pose, z_m: float, tilt_rad: float, angles_rad: Array, max_range_m: float, out_m: Array) -> None:
         """Exact ranges of a plane of laser beams.
 

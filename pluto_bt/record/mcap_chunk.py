@@ -86,14 +86,14 @@ def packed(bulk: Bulk, chunk: OpenChunk, start: int, compress: Callable[[bytes],
     return b"".join(parts), WrittenChunk(bulk, index, counts)
 
 
-def that_fit(chunks: Sequence[WrittenChunk], room: float) -> list[WrittenChunk]:
+def that_fit(chunks: Sequence[WrittenChunk], room_bytes: float) -> list[WrittenChunk]:
     """What fits into so many bytes: of the oldest, what is worth least goes first; the newest chunk of each kind stays."""
     size = sum(chunk.length for chunk in chunks)
     newest = {chunk.bulk: number for number, chunk in enumerate(chunks)}
     gone: set[int] = set()
     for bulk in (Bulk.THINNED, Bulk.WHOLE, Bulk.LOG):
         for number, chunk in enumerate(chunks):
-            if size > room and chunk.bulk is bulk and number != newest[bulk]:
+            if size > room_bytes and chunk.bulk is bulk and number != newest[bulk]:
                 gone.add(number)
                 size -= chunk.length
     return [chunk for number, chunk in enumerate(chunks) if number not in gone]

@@ -43,9 +43,3 @@ class Rectangle(NamedTuple):
         x, y = min(max(x, deep_x), self.height_m - deep_x), min(max(y, deep_y - self.base_m), self.base_m - deep_y)
         c, s = math.cos(self.home[2]), math.sin(self.home[2])
         return self.home[0] + c * x - s * y, self.home[1] + s * x + c * y
-
-    def seen_from(self, frame: Planar) -> Rectangle:
-        """The same rectangle in another frame; `frame` is the pose of that frame's origin in this one."""
-        dx, dy = self.home[0] - frame[0], self.home[1] - frame[1]
-        c, s = math.cos(frame[2]), math.sin(frame[2])
-        return self._replace(home=(c * dx + s * dy, c * dy - s * dx, self.home[2] - frame[2]))

@@ -23,7 +23,6 @@ ENOUGH_M = 2.0  # a heading that is free so far counts as free
 CLEAR_M = 0.04  # steering keeps so much farther away than the braking margin, which is thus touched only in need
 ROOM_M = 0.35  # a heading with so much room on both sides could not have more
 LOOK_M = 1.5  # how far ahead room at the sides counts
-PUSH = 0.35  # how strongly obstacles push against a goal of force 1
 # the weights of a heading, in radians of detour that each is worth
 BLOCKED_RAD, NARROW_RAD, CHANGE_RAD_PER_RAD, OTHER_SIDE_RAD = 3.0, 0.7, 0.2, 1.6
 MEETING_MPS, MEETING_S = 0.5, 2.0  # how fast the robot goes to meet a walker, and how far ahead the walker's way is guessed

@@ -68,7 +68,7 @@ class TopicEntry(Entry):
             return EMPTY
 
     @property
-    def seq(self) -> int:  # type: ignore[override]
+    def seq(self) -> int:  # type: ignore[override]  # an entry of ours counts its writes, a topic is counted elsewhere
         """The topic's sequence number where it is known."""
         count = getattr(self._topics, "seq", None)
         return int(count(self._name)) if count is not None else id(self.value)

@@ -215,8 +215,8 @@ def _mission(view: View) -> Iterator[Cause]:
     state, reason = view.trail.situation.mission
     if state:
         text = f"mission {view.mission} {state}" if view.mission else f"the mission is {state}"
-        is_over = reason == reasons.ESTOP and view.trail.situation.hold[0] != reasons.ESTOP
-        yield _cause("mission", reason or state, text, _since(view, "mission"), unblock=cure(reasons.OPERATOR_STOP) if is_over else "")
+        is_released = reason == reasons.ESTOP and view.trail.situation.hold[0] != reasons.ESTOP
+        yield _cause("mission", reason or state, text, _since(view, "mission"), unblock=cure(reasons.OPERATOR_STOP) if is_released else "")
 
 
 def _cause(layer: str, code: str, text: str, since_s: float, age_s: float = 0.0, unblock: str = "") -> Cause:

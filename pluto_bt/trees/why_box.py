@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def why_at(box: Box, t_s: float | None = None) -> Answer:
     """The answer at a time of the run; without one, at its end: when the mission ended, or the last moment there is."""
     number = _last(box) if t_s is None else box.number_at(t_s)
-    return Answer(False) if number < 0 else explain(view_of(box, box.now(number)))
+    return Answer(False) if number < 0 else explain(view_of(box.now(number)))
 
 
 def end_s(box: Box) -> float | None:
@@ -21,7 +21,7 @@ def end_s(box: Box) -> float | None:
     return box.tick(_last(box)).t_s if box.file.is_whole else None
 
 
-def view_of(box: Box, now: Now) -> View:
+def view_of(now: Now) -> View:
     """What `why` looks at."""
     trees = now.at_work()
     mission = now.mission

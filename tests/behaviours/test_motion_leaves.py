@@ -14,6 +14,7 @@ from pluto_bt.behaviours.reasons import REASONS, WAITING
 from pluto_bt.behaviours.way_driven import WayDriven
 from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, ImuState
 from pluto_bt.trees import TickError, load_mission
+from pluto_bt.trees.loader.registry import node_types
 
 GOTO = '<GoTo goal="3;4" reason="{why}"/>'
 ZERO = (0, (0.0, 0.0), (0.0, 0.0))
@@ -197,6 +198,11 @@ def test_every_motion_leaf_has_the_common_ports_and_words_are_closed() -> None:
     assert all(reason.meaning and reason.cure for reason in REASONS.values())
     assert {kind.KIND for kind in CONDITIONS} == {"Condition"}  # type: ignore[attr-defined]
     assert len({kind.__name__ for kind in LEAVES}) == len(LEAVES)
+
+
+def test_what_two_leaves_have_in_common_is_no_node() -> None:
+    ours = [node for node in node_types().values() if getattr(node.make, "__module__", "").startswith("pluto_bt.behaviours.")]
+    assert {node.make for node in ours} == set(LEAVES)
 
 
 def test_drive_velocity_refreshes_itself_and_ends_by_time(stage: Any) -> None:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from estimation.covariance import ZERO, Covariance, as_nine, blended, from_nine, moved, rotated, stepped
+from estimation.covariance import ZERO, Covariance, as_nine, blended, from_nine, moved, stepped
 from estimation.se2 import arc, compose
 
 small = st.floats(-3, 3)
@@ -30,13 +30,6 @@ def matrix(P: Covariance) -> NDArray[np.float64]:
 def test_moved_is_f_p_ft(P: Covariance, dx: float, dy: float) -> None:
     F = np.array([[1, 0, -dy], [0, 1, dx], [0, 0, 1]])
     np.testing.assert_allclose(matrix(moved(P, dx, dy)), F @ matrix(P) @ F.T, atol=1e-9)
-
-
-@given(covariances(), small)
-def test_rotated_is_r_p_rt(P: Covariance, angle: float) -> None:
-    c, s = math.cos(angle), math.sin(angle)
-    R = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    np.testing.assert_allclose(matrix(rotated(P, angle)), R @ matrix(P) @ R.T, atol=1e-9)
 
 
 @given(covariances(), covariances(), st.floats(0, 1), small, small, small)

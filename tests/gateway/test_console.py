@@ -12,7 +12,6 @@ import pytest
 
 from pluto_bt.blackboard import messages as m
 from pluto_bt.commands.files import package_root
-from pluto_bt.gateway.access import whole
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.port import RunState
@@ -21,7 +20,7 @@ from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.modules.scenery import scenery
 
 from .browsers import ACROSS, PHONE, Screen, chromium
-from .conftest import Running
+from .conftest import Running, whole
 
 EVIL = '<img src=x onerror="document.title=\'taken\'"><script>document.title="taken"</script>'
 POSE = m.Pose(0.0, (4.0, 3.0, 0.0, 0.5, 0.0, 0.0), (0.04, 0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.0, 0.001))

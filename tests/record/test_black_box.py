@@ -194,6 +194,9 @@ def test_a_run_becomes_a_test_that_passes_and_that_can_fail(scenario: Play, tmp_
     scenario("yard.xml", mission=str(tmp_path / "short.xml"), record=tmp_path / "short.mcap")
     to = tmp_path / "test_short.py"
     assert main(["totest", str(tmp_path / "short.mcap"), "--output", str(to)]) == 0
+    to.write_text(edited := to.read_text(encoding="utf-8") + "# mine\n", encoding="utf-8")
+    assert main(["totest", str(tmp_path / "short.mcap"), "--output", str(to)]) == 2 and to.read_text(encoding="utf-8") == edited
+    assert "exists already; nothing was written" in capsys.readouterr().err
     made: dict[str, object] = {"__file__": str(to)}
     exec(compile(to.read_text(encoding="utf-8"), str(to), "exec"), made)
     made["test_short_decides_the_same_on_the_recorded_inputs"]()  # type: ignore[operator]

@@ -37,14 +37,6 @@ def test_who_stands_on_the_base_as_well_as_a_pose_can_tell_is_inside() -> None:
     assert EAST.holds(0.8, 2.0) and not EAST.holds(0.6, 2.0)
 
 
-@given(x=NUMBERS, y=NUMBERS, fx=NUMBERS, fy=NUMBERS, turn=st.floats(-3.0, 3.0))
-def test_a_point_lies_as_deep_whatever_frame_it_is_looked_at_from(x: float, y: float, fx: float, fy: float, turn: float) -> None:
-    seen = NORTH.seen_from((fx, fy, turn))
-    dx, dy = x - fx, y - fy
-    px, py = math.cos(turn) * dx + math.sin(turn) * dy, math.cos(turn) * dy - math.sin(turn) * dx
-    assert seen.depth_m(px, py) == pytest.approx(NORTH.depth_m(x, y), abs=1e-9)
-
-
 @given(x=NUMBERS, y=NUMBERS, depth_m=st.floats(0.0, 20.0))
 def test_the_nearest_point_inside_is_as_deep_as_asked_or_as_the_rectangle_is_wide(x: float, y: float, depth_m: float) -> None:
     point = NORTH.inside(x, y, depth_m)

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pluto_bt.bench.resident import resident_mb
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.script import ScriptSyntaxError, parse_script
+from pluto_bt.trees.script.parser import KEPT_CHARACTERS
 from pluto_bt.trees.script.terms import Env
 from pluto_bt.trees.script.values import ScriptError
 
@@ -164,8 +164,7 @@ def test_arithmetic_is_that_of_doubles(a: float, b: float, sign: str) -> None:
     assert run(f"x {sign} y", x=a, y=b)[0] == expected
 
 
-def test_long_scripts_are_not_kept() -> None:
-    before_mb = resident_mb()
-    for number in range(40):
-        parse_script("; ".join(f"x{number} := {i}" for i in range(600)))  # half a megabyte of terms each
-    assert resident_mb() - before_mb < 8.0
+@pytest.mark.parametrize(("characters", "is_kept"), [(KEPT_CHARACTERS, True), (KEPT_CHARACTERS + 1, False)])
+def test_short_scripts_are_read_once_and_long_ones_are_not_kept(characters: int, is_kept: bool) -> None:
+    text = "a := 1; b := 2".ljust(characters)
+    assert (parse_script(text) is parse_script(text)) == is_kept

@@ -3,7 +3,7 @@
 from typing import Final
 
 from pluto_bt.behaviours.leaf import Leaf
-from pluto_bt.behaviours.nav2 import conditions, costmaps, driving, goals, paths, planning, selectors
+from pluto_bt.behaviours.nav2 import conditions, costmaps, driving, error_conditions, goal_conditions, goals, paths, planning, selectors
 
 NAV2_LEAVES: Final[tuple[type[Leaf], ...]] = (
     planning.ComputePathToPose, planning.ComputePathThroughPoses, planning.SmoothPath, driving.NavigateToPose, driving.NavigateThroughPoses,
@@ -13,8 +13,9 @@ NAV2_LEAVES: Final[tuple[type[Leaf], ...]] = (
     selectors.GoalCheckerSelector, selectors.ProgressCheckerSelector, selectors.PathHandlerSelector, paths.TruncatePath, paths.TruncatePathLocal,
     paths.ConcatenatePaths, paths.GetPoseFromPath, paths.ValidatePath, paths.IsPathValid, goals.RemovePassedGoals, goals.RemoveInCollisionGoals,
     goals.AppendGoalPoseToGoals, goals.GetNextFewGoals, goals.GetCurrentPose, goals.CheckPoseOccupancy, goals.CheckStopStatus,
-    conditions.GoalUpdated, conditions.GlobalUpdatedGoal, conditions.GoalReached, conditions.TimeExpired, conditions.DistanceTraveled,
-    conditions.PathExpiringTimer, conditions.IsBatteryLow, conditions.InitialPoseReceived, conditions.TransformAvailable, conditions.ArePosesNear,
-    conditions.IsGoalNearby, conditions.IsWithinPathTrackingBounds, conditions.AreErrorCodesPresent, conditions.WouldAControllerRecoveryHelp,
-    conditions.WouldAPlannerRecoveryHelp, conditions.WouldASmootherRecoveryHelp, conditions.WouldARouteRecoveryHelp,
+    goal_conditions.GoalUpdated, goal_conditions.GlobalUpdatedGoal, goal_conditions.GoalReached, conditions.TimeExpired,
+    conditions.DistanceTraveled, conditions.PathExpiringTimer, conditions.IsBatteryLow, conditions.InitialPoseReceived,
+    conditions.TransformAvailable, goal_conditions.ArePosesNear, goal_conditions.IsGoalNearby, conditions.IsWithinPathTrackingBounds,
+    error_conditions.AreErrorCodesPresent, error_conditions.WouldAControllerRecoveryHelp, error_conditions.WouldAPlannerRecoveryHelp,
+    error_conditions.WouldASmootherRecoveryHelp, error_conditions.WouldARouteRecoveryHelp,
 )  # fmt: skip

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.node import DecoratorNode, reset
-from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.scopes import MissingValue
 from pluto_bt.trees.values import BOOL, DOUBLE, INT, STATUS, STRING, Kind, PortProblem, queue_of, split_list
@@ -34,7 +34,7 @@ class Loop(DecoratorNode):
         if not self.working:
             self.queue = self._queue(fresh=False)
             if not self.queue:
-                return self._empty()
+                return self.end_as(self.read("if_empty"), "if_empty")
             self.write("value", self.queue.popleft())
         if self.status is not RUNNING:
             self.status = RUNNING
@@ -71,15 +71,6 @@ class Loop(DecoratorNode):
             raise ValueError(f"it holds no list but a {type(value).__name__}")
         except (ValueError, PortProblem) as error:
             self.fail(f"port 'queue': {error}")
-
-    def _empty(self) -> Result:
-        answer: Result = self.read("if_empty")
-        if answer is SKIPPED:
-            return self.skip()
-        if answer is IDLE:
-            self.fail("if_empty is IDLE, which no node may answer")
-        self.status = answer
-        return answer
 
     def forget(self) -> None:
         self.working = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from pluto_bt.trees.engine.node import DecoratorNode, reset, start
-from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result
+from pluto_bt.trees.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS, Result
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.script import ScriptRunner
 from pluto_bt.trees.values import SCRIPT, STATUS
@@ -31,7 +31,7 @@ class Precondition(DecoratorNode):
                 self.fail("port 'if' is missing")
             self.working = self.script.is_true(self)
             if not self.working:
-                return self._answer(otherwise)
+                return self.end_as(otherwise, "else")
         result: Result = self.child.step()
         if result is SKIPPED:
             return self.skip()
@@ -42,11 +42,3 @@ class Precondition(DecoratorNode):
         self.working = False
         self.status = SUCCESS if result is SUCCESS else FAILURE
         return result
-
-    def _answer(self, answer: Result) -> Result:
-        if answer is SKIPPED:
-            return self.skip()
-        if answer is IDLE:
-            self.fail("else is IDLE, which no node may answer")
-        self.status = answer
-        return answer

@@ -221,6 +221,15 @@ class DecoratorNode(Node):
         self.children.append(child)
         child.parent = self
 
+    def end_as(self, answer: Result, port: str) -> Result:
+        """End without the child, with the status that a port names."""
+        if answer is SKIPPED:
+            return self.skip()
+        if answer is IDLE:
+            self.fail(f"{port} is IDLE, which no node may answer")
+        self.status = answer
+        return answer
+
     def pass_on(self) -> Result:
         """Step the child and answer as it does; a child that has ended is then IDLE again."""
         result: Result = self.child.step()

@@ -202,15 +202,19 @@ class Expansion:
                 self._type_clash(plan.node_type, attribute, port.name, key, entry, kind.name)
 
     def _type_clash(self, node_type: NodeType, attribute: XmlAttribute, port: str, key: str, entry: Entry, kind: str) -> None:
-        first, literal = self._declared_at.get(id(entry)), self._literals.get(id(entry))
-        where = f" since {first.file or '<text>'}:{first.line}" if first is not None else ""
         holds = entry.kind.name if entry.kind is not None else ""
-        what = f'entry "{key}" holds {holds}{where}; port "{port}" needs {kind}'
-        mend = "write the literal as the port needs it" if first is None and kind_of_value(entry.value) is not None else "use another entry"
-        if first is None and literal is not None:  # told where it stands, not in the tree that it is given to
-            at, attribute = attribute.value_place, literal
-            what = f'entry "{key}" holds {holds}, as this literal is read; port "{port}" at {at.file or "<text>"}:{at.line} needs {kind}'
-            mend = f'write "{literal.value}.0", or declare the port as {kind} in TreeNodesModel' if (holds, kind) == ("int", "double") else mend
+        first, place = self._declared_at.get(id(entry)), attribute.value_place
+        literal = self._literals.get(id(entry)) if first is None else None
+        if literal is not None:  # told where it stands, not in the tree that it is given to
+            what = f'entry "{key}" holds {holds}, as this literal is read; port "{port}" at {place.file or "<text>"}:{place.line} needs {kind}'
+            place, lacks_point = literal.value_place, (holds, kind) == ("int", "double")
+            with_point = f'write "{literal.value}.0", or declare the port as {kind} in TreeNodesModel'
+            mend = with_point if lacks_point else "write the literal as the port needs it"
+        else:
+            where = f" since {first.file or '<text>'}:{first.line}" if first is not None else ""
+            what = f'entry "{key}" holds {holds}{where}; port "{port}" needs {kind}'
+            is_literal = first is None and kind_of_value(entry.value) is not None
+            mend = "write the literal as the port needs it" if is_literal else "use another entry"
         is_sure = node_type.make is not None and id(entry) not in self._by_models  # models are often careless about types
         tell = self._report.error if is_sure else self._report.warning
-        tell(attribute.value_place, "type-clash", what, expected=kind, found=holds, mend=mend)
+        tell(place, "type-clash", what, expected=kind, found=holds, mend=mend)

@@ -30,26 +30,26 @@ def set_inputs(files: MissionFiles, main: TreeSource, root: Scope, given: Mappin
     model = files.subtree_models.get(main.tree_id)
     meant = set()  # inputs that were given, though wrongly perhaps: they are told once
     for name, text in (given or {}).items():
-        meant.add(_check_name(name, model, main, report))
+        meant.add(_input_meant(name, model, main, report))
         port = model.ports.get(name) if model is not None else None
-        _write(root, name, text, port.type_name if port is not None else "", Place(f"--port {name}={text}"), report)
+        _write(root, name, text, port.type_name if port is not None else "", Place(f"--port {name}={text}"), report, may_be_empty=False)
     for port in model.ports.values() if model is not None else ():
         entry = root.find(port.name)
         if (entry is not None and entry.value is not EMPTY) or port.direction == "out" or port.name in meant:
             continue
         if port.default is not None:
-            _write(root, port.name, port.default, port.type_name, port.element.attributes["default"].value_place, report)
+            _write(root, port.name, port.default, port.type_name, port.element.attributes["default"].value_place, report, may_be_empty=True)
         elif given is not None:
             what = f'input "{port.name}" of {main.tree_id!r} is not given'
             wanted, mend = port.description or port.type_name or "a value", f"add --port {port.name}=VALUE"
             report.error(port.element.place, "missing-input", what, expected=wanted, found="nothing", mend=mend)
 
 
-def _write(root: Scope, name: str, text: str, type_name: str, place: Place, report: Report) -> None:
-    """Typed as a SubTree's literal is."""
+def _write(root: Scope, name: str, text: str, type_name: str, place: Place, report: Report, *, may_be_empty: bool) -> None:
+    """Typed as a SubTree's literal is. A default may be an empty list; who gives one made a slip."""
     kind = DECLARED.get(type_name)
     if kind is not None:
-        problem = _problem(kind, text, is_given=place.file.startswith("--port"))
+        problem = _problem(kind, text, may_be_empty)
         if problem:
             what = f'input "{name}" is declared as {type_name}; "{text}" is none'
             report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=problem)
@@ -60,19 +60,19 @@ def _write(root: Scope, name: str, text: str, type_name: str, place: Place, repo
         report.error(place, "bad-input", str(problem), expected="a value of the entry's kind", found=text)
 
 
-def _problem(kind: Kind, text: str, *, is_given: bool) -> str:
-    """Why a text is no value of a declared input, or "". A default may be an empty list; who gives one on a command line made a slip."""
+def _problem(kind: Kind, text: str, may_be_empty: bool) -> str:
+    """Why a text is no value of a declared input, or ""."""
     try:
         value = kind.parse(text)
     except ValueError as error:
         return str(error)
-    if is_given and value == []:
+    if value == [] and not may_be_empty:
         return "it has no element; leave it out to have the default, if there is one"
     return f"no place is beyond {MAX_METRES:g} m" if kind in (POINT, POINTS) and is_beyond(value) else ""
 
 
-def _check_name(name: str, model: Model | None, main: TreeSource, report: Report) -> str:
-    """The input that is meant; a fault if it is misspelt, or there is none ("")."""
+def _input_meant(name: str, model: Model | None, main: TreeSource, report: Report) -> str:
+    """The input that a name means, "" if none comes near; with a fault unless it is the name itself."""
     known = list(model.ports) if model is not None else _keys_used(main)
     if name in known:
         return name
