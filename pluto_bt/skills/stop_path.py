@@ -19,7 +19,7 @@ MOST_MARGIN_M = 0.1
 LONGEST_S = 8.0
 BODY_M, SLIM_M = 0.2, 0.1  # who touches the outline has his middle about so far outside of it, give or take the second
 FAN_RAD = math.radians(15.0)  # a corner may be touched from all directions between its two edges' normals: one is looked at in each so much
-WALKER_X, WALKER_Y, SPREAD_M, GROWTH_MPS, IN_VIEW, WALKER_COLUMNS = range(6)  # columns of the walkers, and how many there are
+WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS, IN_VIEW, WALKER_COLUMNS = range(8)  # columns of the walkers, and how many there are
 STRANGER = -1.0  # in place of IN_VIEW: somebody whom no sensor found
 SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, LEAST_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(11)
 
@@ -135,7 +135,7 @@ def is_walked_to(walkers: Array, px: float, py: float, t_s: float, is_fresh: boo
     """Whether the middle of a walker may be at a point after `t_s`; of those out of view none is where it `is_fresh`, no stranger where `is_late`."""
     found = False
     for k in range(walkers.shape[0]):
-        dx, dy = walkers[k, WALKER_X] - px, walkers[k, WALKER_Y] - py
+        dx, dy = walkers[k, WALKER_X] + walkers[k, DRIFT_X] * t_s - px, walkers[k, WALKER_Y] + walkers[k, DRIFT_Y] * t_s - py
         near_m = walkers[k, SPREAD_M] + walkers[k, GROWTH_MPS] * t_s + SLIM_M
         is_elsewhere = is_fresh if walkers[k, IN_VIEW] == 0.0 else is_late and walkers[k, IN_VIEW] == STRANGER
         if dx * dx + dy * dy < near_m * near_m and not is_elsewhere:

@@ -24,7 +24,8 @@ SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
 SURE = 2  # a single sighting may be a grazed edge
 MOST_WALKERS = 12
-PERHAPS_S = 1.0  # who is perhaps there is forgotten after so long
+PERHAPS_S = 1.0  # who is perhaps there is forgotten after so long, …
+OFTEN = 4  # … and surely there if he was heard so often meanwhile
 
 
 class WalkerWatch:
@@ -76,7 +77,7 @@ class WalkerWatch:
         """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
-        is_one_sure = any(one.times >= SURE for one in self._walkers)
+        is_one_sure = any(one.times >= SURE for one in self._walkers) or len(self._perhaps) >= OFTEN
         if is_one_sure or (self._perhaps and now_s - self._about_s < PERHAPS_S):
             self._about_s = now_s
             return np.array([one.row(now_s) for one in (*self._walkers, *self._perhaps)])  # where one walks, less is enough to believe in another
@@ -126,5 +127,5 @@ def _apart(seen: list[Walker]) -> list[Walker]:
 
 
 NOBODY: Array = np.zeros((0, WALKER_COLUMNS))
-ANYWHERE: Array = np.array([[0.0, 0.0, 1e6, 0.0, STRANGER]])  # somebody out of view, nobody knows where
+ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, STRANGER]])  # somebody out of view, nobody knows where
 NO_BODY: Array = np.zeros((0, 3))

@@ -215,7 +215,7 @@ def test_into_what_was_never_seen_only_creeping(name: str, now: tuple[float, flo
     ("name", "told", "walker", "fresh_since_s", "code"),
     [
         ("in view, he comes towards the front", (0.5, 0.0), Walker(1.3, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
-        ("in view, he goes away, and may turn on his heel", (0.5, 0.0), Walker(1.3, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
+        ("in view, he goes away, and may turn on his heel", (0.5, 0.0), Walker(1.1, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
         ("in view, he is so far that he may do so", (0.5, 0.0), Walker(2.2, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
         ("in view, he is too far to get here", (0.5, 0.0), Walker(4.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
         ("creeping is no collision", (0.04, 0.0), Walker(1.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
