@@ -23,12 +23,13 @@ from pluto_bt.gateway.key_ring import KeyRing, shown_name
 from pluto_bt.gateway.listen import Address, parse_address
 from pluto_bt.gateway.pulse import BEAT_S
 from pluto_bt.gateway.ssh_visit import Visit
+from pluto_bt.runtime.precedence import precedence
 
 LOGIN_S = 15
 KEEPALIVE_S, KEEPALIVES = 3, 3
 LOGINS = 48
 VISITS = 64
-NICENESS = 10  # the arithmetic of logins must not hold up the control loop; a key that is hit is heard soon all the same
+NICENESS = 10
 
 
 @dataclass
@@ -120,7 +121,10 @@ async def _beat(leash: socket.socket) -> None:
 def main() -> None:
     """`ssh LEASH_FD LISTENER_FD GATEWAY KEYS HOST_KEY`."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the run's terminal is the executive's
-    os.nice(NICENESS)
+    with precedence() as is_permitted:
+        pass
+    if not is_permitted:  # the control loop is not sure to go before the arithmetic of logins
+        os.nice(NICENESS)
     logging.getLogger("asyncssh").setLevel(logging.CRITICAL)  # who cannot get in is told so himself
     import_module("pluto_bt.gateway.shell.console")  # now: when the first visitor comes it would hold up all others
     leash, listener = (socket.socket(fileno=int(word)) for word in sys.argv[1:3])

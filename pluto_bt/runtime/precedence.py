@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 PRIORITY = 1
 """Of the real-time priorities the least: before every ordinary program, after all that was given one on purpose."""
@@ -22,3 +24,14 @@ def take_precedence() -> bool:
     except (AttributeError, OSError):
         return False
     return True
+
+
+@contextmanager
+def precedence(*, wanted: bool = True) -> Iterator[bool]:
+    """The same for a while: afterwards the thread is an ordinary one. True within, if it was `wanted` and is permitted."""
+    taken = wanted and take_precedence()
+    try:
+        yield taken
+    finally:
+        if taken:  # without the second word only root could go back
+            os.sched_setscheduler(0, os.SCHED_OTHER | os.SCHED_RESET_ON_FORK, os.sched_param(0))
