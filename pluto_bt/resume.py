@@ -114,7 +114,8 @@ def _read(path: Path) -> Past | None:
         faults = Faults()
         found = error.strerror or str(error) if isinstance(error, OSError) else "something else"
         what, expected = "this file is no journal of a mission, and is left as it is", "a journal that `pluto run --resume` has kept, or no file"
-        faults.error(Place(str(path)), "no-journal", what, expected=expected, found=found, mend="name another file with --journal, or move this one away")
+        mend = "name another file with --journal, or move this one away"
+        faults.error(Place(str(path)), "no-journal", what, expected=expected, found=found, mend=mend)
         faults.raise_errors()
         raise
 
