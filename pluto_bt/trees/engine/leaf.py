@@ -17,7 +17,7 @@ from py_trees.common import Status
 
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
-from pluto_bt.trees.errors import StepError
+from pluto_bt.trees.errors import RAISED, StepError
 
 
 def bind_leaf(leaf: Any, context: Context) -> None:
@@ -43,7 +43,7 @@ def _plain_step(leaf: Any, context: Context) -> Callable[[], Result]:
         context.current = leaf
         try:
             new: Status = update()
-        except Exception as error:
+        except RAISED as error:
             raise _blamed(leaf, error) from error
         if new is SUCCESS or new is FAILURE or new is RUNNING:
             leaf.status = new
@@ -66,7 +66,7 @@ def _full_step(leaf: Any, context: Context) -> Callable[[], Result]:
                 terminate(new)
                 leaf.status = new
                 return new
-        except Exception as error:
+        except RAISED as error:
             raise _blamed(leaf, error) from error
         if new is RUNNING:
             leaf.status = new
@@ -83,7 +83,7 @@ def _no_status(leaf: Any, context: Context, answer: object) -> Skip:
     raise StepError(leaf, f"update() returned {answer!r}, which is no status")
 
 
-def _blamed(leaf: Any, error: Exception) -> StepError:
+def _blamed(leaf: Any, error: BaseException) -> StepError:
     return error if isinstance(error, StepError) else StepError(leaf, told(error))
 
 
@@ -92,7 +92,7 @@ def _foreign_step(leaf: Any, context: Context) -> Callable[[], Result]:
         context.current = leaf
         try:
             leaf.tick_once()
-        except Exception as error:
+        except RAISED as error:
             raise StepError(leaf, told(error)) from error
         status: Status = leaf.status
         if status is IDLE:
@@ -118,7 +118,7 @@ def _halt(leaf: Any) -> Callable[[], None]:
                     leaf.terminate(IDLE)
                 else:
                     leaf.stop(IDLE)
-            except Exception as error:
+            except RAISED as error:
                 raise StepError(leaf, told(error)) from error
             finally:
                 leaf.status = IDLE
@@ -126,7 +126,7 @@ def _halt(leaf: Any) -> Callable[[], None]:
     return halt
 
 
-def told(error: Exception) -> str:
+def told(error: BaseException) -> str:
     """An exception in one line, with the place in the leaf's own file where it was raised."""
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     places = [frame for frame in traceback.extract_tb(error.__traceback__) if "/pluto_bt/trees/" not in frame.filename.replace(os.sep, "/")]
