@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -168,3 +169,11 @@ def test_the_command_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     capsys.readouterr()
     assert main(["why", str(tmp_path / "a.mcap"), "--at", "300"]) == main(["why", str(tmp_path / "a.mcap")]) == 0
     assert capsys.readouterr().out.count("not moving when the run ended, at ") == 2
+
+
+def test_where_nobody_listens_it_says_what_would_help_and_what_a_robot_may_still_be_doing(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as held:  # bound and not listening: nobody else can take the port meanwhile
+        held.bind(("127.0.0.1", 0))
+        assert main(["why", "--gateway", f"127.0.0.1:{held.getsockname()[1]}"]) == 1
+    told = capsys.readouterr().err
+    assert "no gateway at 127.0.0.1" in told and "--realtime" in told and "compiling kernels" in told
