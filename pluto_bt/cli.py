@@ -23,7 +23,7 @@ COMMANDS = {
     "plot": "a recorded run as a picture: path, speeds, verdicts, leaves",
     "export": "a black box as JSON, CSV, XML or a CARMEN log",
     "record": "record a running robot from outside",
-    "repair": "make a black box whole that was cut short",
+    "repair": "make a black box whole that was cut short or damaged",
     "totest": "make a pytest file of a recorded run",
     "bench": "measure, and print ratios",
 }

@@ -58,6 +58,7 @@ class Loop:
         self._system = system
         self._interrupt = threading.Event()
         self.held = ""  # why the mission waits for an operator before its first tick
+        self.told = ""  # what of an earlier run it goes on with
         self.wall_time_s = 0.0  # from the first step to the last
 
     def interrupt(self) -> None:
@@ -70,6 +71,8 @@ class Loop:
         system.executive.core.start(mission, HELD if self.held else "")
         if self.held:
             system.say("warning", HELD, "executive", self.held)
+        elif self.told:
+            system.say("info", "resumed", "executive", f"{self.told}; it goes on there")
         system.start_parts()
         if isinstance(system.clock, MonotonicClock):
             system.clock.restart()  # starting the gateway's process takes its time
@@ -122,7 +125,7 @@ class Loop:
         mission, limit_s = system.executive.core.mission, system.options.max_time_s
         if guard.ended is not None or (mission is not None and mission.is_over):
             return True
-        if limit_s is None and (asked := self._asked_of_nobody()):
+        if (self.held or limit_s is None) and (asked := self._asked_of_nobody()):
             guard.end(HELD, asked)
         elif self._interrupt.is_set():
             guard.end("interrupted", "interrupted: Ctrl-C, SIGTERM, or the terminal was closed")

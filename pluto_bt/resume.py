@@ -16,8 +16,9 @@ from pathlib import Path
 from pluto_bt.commands.inputs import Inputs
 from pluto_bt.modules.resume_parameters import ResumeParameters
 from pluto_bt.runtime.state_folder import state_path
+from pluto_bt.source import Faults, Place
 from pluto_bt.trees import Mission, memory
-from pluto_bt.trees.journal import Past, Pose, read_journal
+from pluto_bt.trees.journal import NoJournalError, Past, Pose, read_journal
 
 HELD = "held"
 
@@ -46,13 +47,14 @@ class Resumption:
     Attributes:
         path: the journal to keep from now on. `past`: what it begins with.
         start: where the robot was left; None = as asked for.
-        held: "" or the sentence that tells why the mission waits for an operator.
+        told: "" or what there was to go on with. `held`: "" or the sentence that tells why the mission waits for an operator.
         is_resumed: the mission goes on, now or when an operator says so, where an earlier run was cut off.
     """
 
     path: Path
     past: Past
     start: Pose | None = None
+    told: str = ""
     held: str = ""
     is_resumed: bool = False
 
@@ -80,35 +82,56 @@ def _hash(files: Sequence[str], words: str) -> str:
 def decide(request: ResumeRequest, inputs: Inputs, mission: Mission, now_ns: int) -> Resumption:
     """Look at the journal, and let the mission remember what it tells; `now_ns` of the calendar.
 
-    Raises: OSError if a file of the run cannot be read.
+    Raises: InputError if the journal's file is something else. OSError if a file of the run cannot be read.
     """
     path, start = request.journal or journal_path(inputs), inputs.start if request.is_placed else None
     hashes = hashes_of(inputs, mission)
-    past = read_journal(path)
+    past = _read(path)
     if past is None or not past.has_begun:
         return Resumption(path, Past(hashes))
     doubts = _doubts(past, hashes, start, now_ns, inputs.robot.resume)
-    is_same = past.hashes.get("mission") == hashes["mission"]
+    is_same = past.damaged_line != 1 and past.hashes.get("mission") == hashes["mission"]
     if is_same and past.state["nodes"]:
         doubts += [f"entry {key} could not be kept" for key in memory.give_back(mission, past.state)]
-    age_s = (now_ns - past.wall_ns) / 1e9
-    done = f"after {past.finished[-1][0]} had ended" if past.finished else "before a step had ended"
-    told = f"a run of this mission was cut off {age_s:.0f} s ago, {done}"
+    told = _told(past, now_ns)
     if doubts:
-        held = f"{told}; going on is in doubt: {'; '.join(doubts)}"
+        on = "goes on all the same" if is_same else "begins it anew"
+        held = f"{told}; going on is in doubt: {'; '.join(doubts)}. `pluto shell resume` {on}"
     elif request.policy == "resume" or (request.policy == "ask" and request.confirm(f"{told}. Go on where it was?")):
         held = ""
     else:
         held = f"{told}; it waits for an operator: `pluto shell resume`, or --resume resume"
     where = past.truth if start is None else None
-    return Resumption(path, replace(past, hashes=hashes) if is_same else Past(hashes), where, held, is_same)
+    kept = replace(past, hashes=hashes) if is_same else Past(hashes, damaged_line=past.damaged_line)
+    return Resumption(path, kept, where, told, held, is_same)
+
+
+def _read(path: Path) -> Past | None:
+    """The journal. Raises: InputError for a file that is none, or cannot be read: it must not be written over."""
+    try:
+        return read_journal(path)
+    except (NoJournalError, OSError) as error:
+        faults = Faults()
+        found = error.strerror or str(error) if isinstance(error, OSError) else "something else"
+        what, expected = "this file is no journal of a mission, and is left as it is", "a journal that `pluto run --resume` has kept, or no file"
+        mend = "name another file with --journal, or move this one away"
+        faults.error(Place(str(path)), "no-journal", what, expected=expected, found=found, mend=mend)
+        faults.raise_errors()
+        raise
+
+
+def _told(past: Past, now_ns: int) -> str:
+    ago = f" {(now_ns - past.wall_ns) / 1e9:.0f} s ago" if past.wall_ns else ""
+    return f"a run of this mission was cut off{ago}, " + (f"after {past.finished[-1][0]} had ended" if past.finished else "before a step had ended")
 
 
 def _doubts(past: Past, hashes: dict[str, str], start: Pose | None, now_ns: int, limits: ResumeParameters) -> list[str]:
     """Why going on may not be sane; one sentence each."""
-    found = [f"the {name} has changed" for name, digest in hashes.items() if past.hashes.get(name) != digest]
+    found = [f"the journal is damaged at line {past.damaged_line}, and what was done after that is not known"] if past.damaged_line else []
+    if past.hashes:
+        found += [f"the {name} has changed" for name, digest in hashes.items() if past.hashes.get(name) != digest]
     age_s = (now_ns - past.wall_ns) / 1e9
-    if not 0.0 <= age_s <= limits.max_age_s:
+    if past.wall_ns and not 0.0 <= age_s <= limits.max_age_s:
         found.append(f"the journal is {age_s:.0f} s old; {limits.max_age_s:g} s are allowed (resume.max_age_s)")
     if start is not None and past.pose is not None:
         away_m = math.hypot(start[0] - past.pose[0], start[1] - past.pose[1])

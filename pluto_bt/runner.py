@@ -97,9 +97,9 @@ class Runner:
             believed = sample.value.pose if sample is not None and isinstance(sample.value, Pose) else None
             return None if believed is None else (believed[0], believed[1], believed[3]), system.simulator.pose
 
-        journal = Journal(resumption.path, resumption.past)
+        journal = Journal(resumption.path, resumption.past, waits=bool(resumption.held))
         system.executive.keeper = JournalKeeper(self.mission, journal, resumption.past, where)
-        self.loop.held = resumption.held
+        self.loop.held, self.loop.told = resumption.held, resumption.told
 
     def _end_journal(self) -> None:
         """A run that came to its end leaves nothing to resume; one that only waited for an operator leaves what it found."""

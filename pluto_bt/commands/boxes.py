@@ -30,7 +30,8 @@ def read_box(name: str, *, needs_ticks: bool = True) -> Box:
 
         box = _of_carmen(name, faults) if is_carmen(name) else open_box(Path(name), name, faults)
         if box is not None and not box.file.is_whole:
-            print(f"{name}: the recording was cut short; read as far as it goes (`pluto repair {name}` makes it whole)", file=sys.stderr)
+            told = "is damaged; read what is good of it" if box.file.is_damaged else "was cut short; read as far as it goes"
+            print(f"{name}: the recording {told} (`pluto repair {name}` makes it whole)", file=sys.stderr)
         if box is not None and needs_ticks and box.run.mode == WATCHED:
             what, mend = f'"{name}" was recorded from outside: it has topics, but no ticks of a tree', "`pluto plot` and `pluto export` read it"
             faults.error(Place(name), "no-ticks", what, expected="a file of `pluto run --record`", found="topics alone", mend=mend)

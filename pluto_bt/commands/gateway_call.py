@@ -11,7 +11,10 @@ if TYPE_CHECKING:
     from pluto_bt.gateway.backoff import Backoff
     from pluto_bt.gateway.client import Client, Element, GatewayError
 
-HINT: Final = "\n  start a robot with `pluto run MISSION.xml --realtime`"
+HINT: Final = (
+    "\n  start a robot with `pluto run MISSION.xml --realtime`"
+    "\n  one that says it is compiling kernels opens its gateway when that is done"
+)
 
 
 def gateway_parser(command: str, description: str) -> Parser:

@@ -36,7 +36,8 @@ def facts_of(box: Box) -> dict[str, Any]:
     times_ns = box.times_ns or [line.time_ns for line in box.file.lines()] or [0]
     first_s, last_s = times_ns[0] / 1e9, times_ns[-1] / 1e9
     return {
-        "file": box.file.shown, "bytes": Path(box.file.shown).stat().st_size, "is_whole": box.file.is_whole, "version": run.version, "mode": run.mode,
+        "file": box.file.shown, "bytes": Path(box.file.shown).stat().st_size, "is_whole": box.file.is_whole,
+        "is_damaged": box.file.is_damaged, "version": run.version, "mode": run.mode,
         "mission": run.mission, "world": run.world, "map": run.map, "platform": run.platform, "seed": run.seed, "start": list(run.start),
         "tree": run.tree, "ports": run.ports, "settings": list(run.settings), "plugins": list(run.plugins), "ticks": len(box), "from_s": first_s,
         "to_s": last_s, "is_from_start": box.is_from_start, "result": box.result.get("result", ""), "reason": box.result.get("reason", ""),
@@ -47,8 +48,8 @@ def facts_of(box: Box) -> dict[str, Any]:
 
 
 def _lines(facts: dict[str, Any]) -> list[str]:
-    cut = "" if facts["is_whole"] else ", cut short (`pluto repair` makes it whole)"
-    old = "" if facts["is_from_start"] else ", the first ticks were dropped for want of room"
+    cut = "" if facts["is_whole"] else f", {'damaged' if facts['is_damaged'] else 'cut short'} (`pluto repair` makes it whole)"
+    old = "" if facts["is_from_start"] else f", the first ticks {'are lost' if facts['is_damaged'] else 'were dropped for want of room'}"
     outcome = facts["result"] + (f" ({facts['reason']})" if facts["reason"] else "") or "not known: the run did not come to its end"
     ports = " ".join(f"{name}={value}" for name, value in facts["ports"].items())
     if facts["mode"] == "watched":

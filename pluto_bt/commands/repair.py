@@ -1,4 +1,4 @@
-"""`pluto repair FILE`: makes a black box whole that was cut short by a crash."""
+"""`pluto repair FILE`: makes a black box whole that was cut short by a crash, or damaged."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pluto_bt.commands.options import Parser
 
 def main(argv: list[str]) -> int:
     """Write what can be read, with an index, so that every MCAP tool opens it."""
-    parser = Parser(prog="pluto repair", description="Make a black box whole that was cut short by a crash.")
+    parser = Parser(prog="pluto repair", description="Make a black box whole that was cut short by a crash, or damaged.")
     parser.add_argument("file", metavar="FILE.mcap")
     parser.add_argument("--output", metavar="FILE.mcap", help="write here instead of in place")
     args = parser.parse_args(argv)
     from pluto_bt.commands.boxes import read_mcap
     from pluto_bt.commands.outputs import check_output
-    from pluto_bt.record.repair import repair
+    from pluto_bt.record.repair import kept_as, repair
 
     check_output(args.output, (".mcap",))
     file = read_mcap(args.file)
@@ -28,10 +28,12 @@ def main(argv: list[str]) -> int:
     if file.is_whole and args.output is None:
         print(f"{args.file} is whole already")
         return 0
+    kept = kept_as(to) if file.is_damaged and args.output is None else None
     try:
         saved = repair(file, to)
     except OSError as error:
         print(f"pluto repair: cannot write {to}: {error.strerror or error}", file=sys.stderr)
         return 2
-    print(f"{to}: {saved} messages saved")
+    lost = "" if not file.is_damaged else ", what was damaged is lost" + (f"; the file as it was: {kept}" if kept is not None else "")
+    print(f"{to}: {saved} messages saved{lost}")
     return 0

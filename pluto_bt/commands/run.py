@@ -70,8 +70,9 @@ def _confirm(question: str) -> bool:
     return sys.stdin.readline().strip().lower() in ("y", "yes")
 
 
-def _tell_of_compilation() -> None:
-    print("compiling kernels: once after an installation or an update, up to a minute", file=sys.stderr, flush=True)
+def _tell_of_compilation(has_gateway: bool) -> None:
+    then = "; the gateway opens when that is done" if has_gateway else ""
+    print(f"compiling kernels: once after an installation or an update, up to a minute{then}", file=sys.stderr, flush=True)
 
 
 def _resume(args: argparse.Namespace) -> ResumeRequest | None:
@@ -99,11 +100,12 @@ def _run(args: argparse.Namespace) -> RunResult:
         print(warning.as_text(), file=sys.stderr)
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
+    has_gateway = args.realtime or any((args.gateway, args.ssh, args.web))
     progress = _progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
         resume=_resume(args), gateway=args.gateway, gateway_access=doors.access, gateway_audit=args.gateway_audit, web=args.web,
-        groot=args.groot, ssh=doors.ssh, on_event=progress.event, on_progress=progress.show, on_compiling=_tell_of_compilation,
+        groot=args.groot, ssh=doors.ssh, on_event=progress.event, on_progress=progress.show, on_compiling=lambda: _tell_of_compilation(has_gateway),
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

@@ -101,9 +101,12 @@ class Executive:
             self.on_event(event)
 
     def _keep(self, keeper: JournalKeeper, ticked: list[Activity], lines: list[str], now_s: float) -> None:
-        """The journal of the mission; it ends with the mission, or when another one takes its place."""
+        """The journal of the mission; it ends with the mission, or when another one takes its place.
+
+        What an earlier run has left is not touched as long as the mission waits, nor by the end of a run that only waited.
+        """
         activity = self.core.mission
-        if activity is None:
+        if activity is None or (activity.ticks == 0 and (not activity.is_over or self._system.guard.ended is not None)):
             return
         is_its = activity.mission is keeper.mission
         if is_its and activity in ticked:

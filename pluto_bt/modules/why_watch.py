@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 from collections import deque
 from collections.abc import Sequence
-from itertools import zip_longest
 from typing import NamedTuple
 
 from pluto_bt.blackboard.messages import MissionState, NodeState, TreeState
@@ -16,7 +15,7 @@ from pluto_bt.modules.situation import SituationWatch
 from pluto_bt.record.trail import Trail
 from pluto_bt.runtime.clock import NS
 from pluto_bt.trees.activity import ABORTED, FAILED, PAUSED
-from pluto_bt.trees.why import NodeAtWork, View, explain
+from pluto_bt.trees.why import NodeAtWork, View, explain, innermost
 
 PERIOD_S = 0.1
 KEPT = 3000  # changes of the past that can be asked for with `at`; the black box knows them all
@@ -56,7 +55,7 @@ class WhyWatch:
             self._seen = seen
             nodes = tree.value.nodes if tree is not None and isinstance(tree.value, TreeState) else ()
             state = mission.value if mission is not None and isinstance(mission.value, MissionState) else None
-            self._past.append(Past(now_s, self._view(now_s, copy.deepcopy(self._trail), _leaves(nodes), state)))
+            self._past.append(Past(now_s, self._view(now_s, copy.deepcopy(self._trail), _at_work(nodes), state)))
 
     def _view(self, now_s: float, trail: Trail, nodes: Sequence[NodeAtWork], state: MissionState | None) -> View:
         core = self._context.system.executive.core
@@ -80,10 +79,7 @@ class WhyWatch:
         return found.is_moving, [Cause(*cause) for cause in found.causes]
 
 
-def _leaves(nodes: Sequence[NodeState]) -> list[NodeAtWork]:
-    """The leaves that run."""
-    return [
-        NodeAtWork(row.path, row.kind, row.status, row.feedback, row.since_s)
-        for row, after in zip_longest(nodes, nodes[1:])
-        if row.status == "RUNNING" and (after is None or after.depth <= row.depth)
-    ]
+def _at_work(nodes: Sequence[NodeState]) -> list[NodeAtWork]:
+    """The nodes at work."""
+    rows = (nodes[i] for i in innermost([(row.depth, row.status == "RUNNING") for row in nodes]))
+    return [NodeAtWork(row.path, row.kind, row.status, row.feedback, row.since_s) for row in rows]

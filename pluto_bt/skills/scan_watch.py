@@ -66,7 +66,7 @@ class ScanWatch:
     def verdict(self, now_s: float) -> Verdict:
         """Why the laser cannot be trusted now; ALL_WELL if it can."""
         if self._last is not None and now_s - self._last.stamp_s > self._stale_s and self._fault.code != LinkStatus.LASER_FATAL:
-            self._fault = _bad(f"the newest scan was taken {now_s - self._last.stamp_s:.2f} s ago; {self._stale_s:.2f} s are allowed")
+            self._fault = _bad(f"the newest scan was taken {now_s - self._last.stamp_s:.2f} s ago, {self._stale_s:.2f} s are allowed")
             self._good_in_a_row = 0
         return self._fault
 
@@ -78,7 +78,7 @@ class ScanWatch:
             return _bad("the laser had a fatal error and is rebooting", LinkStatus.LASER_FATAL, reasons.LASER_FATAL)
         if not len(ranges) or n_usable < (1.0 - self._holes) * len(ranges):
             share = 1.0 - n_usable / max(1, len(ranges))
-            return _bad(f"{share:.0%} of the beams give no usable number; {self._holes:.0%} are allowed")
+            return _bad(f"{share:.0%} of the beams give no usable number, {self._holes:.0%} are allowed")
         if laser is None:
             return Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
         half = len(ranges) // 2

@@ -9,9 +9,11 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from pluto_bt.source import InputError, PlutoError
+
+RAISED: Final = (Exception, SystemExit)  # what the code of a leaf may raise: its sys.exit() is a bug of it, and must not end the robot's program
 
 
 class MissionError(InputError):

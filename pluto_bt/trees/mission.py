@@ -15,7 +15,7 @@ from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result, name_of
-from pluto_bt.trees.errors import StepError, TickError
+from pluto_bt.trees.errors import RAISED, StepError, TickError
 from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.stand_ins import StandIns
@@ -93,7 +93,7 @@ class Mission:
             self.halt()
         return self._told(error)
 
-    def _told(self, error: Exception) -> TickError:
+    def _told(self, error: BaseException) -> TickError:
         node = error.node if isinstance(error, StepError) else self.root
         reason = error.reason if isinstance(error, StepError) else told(error)
         tracked = next((one for one in self._tracked if one.node is node), self._tracked[0])
@@ -106,7 +106,7 @@ class Mission:
         As in BehaviorTree.CPP every node is then told once more, which runs its `_onHalted` script whether it was RUNNING or not.
         Raises: TickError with the first error of a node, after all have been halted.
         """
-        errors: list[Exception] = []
+        errors: list[BaseException] = []
         for tracked in self._tracked:
             if tracked.node.status is not IDLE:
                 tracked.node.last = tracked.node.status
@@ -218,8 +218,8 @@ class Mission:
             seen.add(tracked.path)
 
 
-def _attempt(halt: Callable[[], None], errors: list[Exception]) -> None:
+def _attempt(halt: Callable[[], None], errors: list[BaseException]) -> None:
     try:
         halt()
-    except Exception as error:
+    except RAISED as error:
         errors.append(error)

@@ -15,9 +15,10 @@ from pluto_bt.record.entries import LINKS, Link
 from pluto_bt.record.trail import Trail, Trouble
 from pluto_bt.skills import reasons
 from pluto_bt.trees.contracts import CONTRACT
-from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, cure, meaning, rank
+from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, OF_WAITING, cure, meaning, rank
 
 LOCALISATION: Final = "localisation"
+ENDED_BY_ORDER: Final = ("aborted", reasons.STOPPED)  # of a mission
 CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
 STUCK_S: Final = 25.0  # the same for who is stuck: goto tries for 20 s to come nearer, and is held back only now and then
@@ -32,6 +33,20 @@ class NodeAtWork(NamedTuple):
     status: str
     feedback: str
     since_s: float
+
+
+def innermost(rows: Sequence[tuple[int, bool]]) -> list[int]:
+    """Which nodes of a tree the others wait for: those that run while nothing below them does, leaves or decorators that wait themselves.
+
+    `rows`: the (depth, does it run) of each node, depth first.
+    """
+    found, highest = [], -1  # the least depth from here to the next node that runs
+    for i in reversed(range(len(rows))):
+        depth, runs = rows[i]
+        if runs and highest <= depth:
+            found.append(i)
+        highest = depth if runs else min(highest, depth)
+    return found[::-1]
 
 
 class Cause(NamedTuple):
@@ -96,6 +111,8 @@ def _person(view: View) -> Cause | None:
     word, text = trail.situation.hold
     if word:
         return _cause("operator", word, text, _since(view, "hold"))
+    if trail.situation.mission == ENDED_BY_ORDER:
+        return _cause("operator", reasons.STOPPED, "an operator ended the mission", _since(view, "mission"), unblock="start the mission anew")
     if not view.paused or trail.situation.moves:  # whom somebody drives by hand, no pause keeps standing
         return None
     if view.paused == reasons.ESTOP:  # and is released: nothing holds the robot any more
@@ -206,9 +223,10 @@ def _links(view: View) -> Iterator[Cause]:
 
 
 def _nodes(view: View) -> Iterator[Cause]:
-    """The leaves that work or wait."""
+    """The nodes that work or wait."""
     for node in view.nodes:
-        yield Cause("node", node.status.lower(), f"{node.path} ({node.kind}){': ' + node.feedback if node.feedback else ''}", node.since_s)
+        text = f"{node.path} ({node.kind}){': ' + node.feedback if node.feedback else ''}"
+        yield Cause("node", node.status.lower(), text, node.since_s, unblock=OF_WAITING.get(node.kind, ""))
 
 
 def _mission(view: View) -> Iterator[Cause]:

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pluto_bt.trees.why import Answer, NodeAtWork, View, explain
+from pluto_bt.trees.why import Answer, NodeAtWork, View, explain, innermost
 
 if TYPE_CHECKING:
     from pluto_bt.record.box import Box, Now, TreeNow
 
 
 def why_at(box: Box, t_s: float | None = None) -> Answer:
-    """The answer at a time of the run; without one, at its end: when the mission ended, or the last moment there is."""
-    number = _last(box) if t_s is None else box.number_at(t_s)
+    """The answer at a time of the run; without or past it, at its end: when the mission ended, or the last moment there is."""
+    last = _last(box)
+    number = last if t_s is None else min(box.number_at(t_s), last)  # when the mission is over all links are told to stop: no cause of anything
     return Answer(False) if number < 0 else explain(view_of(box.now(number)))
 
 
@@ -33,24 +34,17 @@ def view_of(now: Now) -> View:
 
 
 def _at_work(tree: TreeNow) -> list[NodeAtWork]:
-    """The running leaves, depth first."""
+    """The nodes at work, depth first."""
     rows = list(tree.rows())
-    found = []
-    for i, (row, status, feedback, since_ns) in enumerate(rows):
-        is_leaf = i + 1 == len(rows) or rows[i + 1][0].depth <= row.depth
-        if is_leaf and status == "RUNNING":
-            found.append(NodeAtWork(row.path, row.kind, status, feedback, since_ns / 1e9))
-    return found
+    at_work = innermost([(row.depth, status == "RUNNING") for row, status, _, _ in rows])
+    return [NodeAtWork(row.path, row.kind, status, feedback, since_ns / 1e9) for row, status, feedback, since_ns in (rows[i] for i in at_work)]
 
 
 def _last(box: Box) -> int:
-    """The tick at which the mission ended, else the last one."""
+    """The tick at which the mission ended, if nothing was ticked later; else the last one."""
     for number in reversed(range(len(box))):
-        if any(branch.state != "running" for branch in box.tick(number).trees) and not _goes_on(box, number):
-            return number
+        branches = box.tick(number).trees
+        if branches:
+            is_end = any(branch.state != "running" and box.trees[branch.run].role == "mission" for branch in branches)
+            return number if is_end else len(box) - 1
     return len(box) - 1
-
-
-def _goes_on(box: Box, number: int) -> bool:
-    """True if trees were ticked later, so that it was not the end."""
-    return any(box.tick(later).trees for later in range(number + 1, len(box)))

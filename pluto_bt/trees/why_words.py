@@ -31,6 +31,10 @@ OF_CODE: Final[dict[int | None, str]] = {
     LinkStatus.LASER_FATAL: reasons.LASER_FATAL, LinkStatus.LASER_SLOW_STOP: reasons.LASER, LinkStatus.FRONT_BUMPER: reasons.BUMPER,
     LinkStatus.BACK_BUMPER: reasons.BUMPER, LinkStatus.COMMAND_TIMEOUT: reasons.COMMAND_TIMEOUT,
 }  # fmt: skip
+OF_WAITING: Final = {  # the type of a node that waits -> what ends it
+    "Sleep": "wait, or give it a shorter msec", "Delay": "wait, or give it a shorter delay_msec",
+    "WaitValueUpdate": "write the entry that it waits for", "Precondition": "make its condition true, or let `else` be something else",
+}  # fmt: skip
 CURES: Final = {
     reasons.LASER: "clear the way, or wait until what stands there has gone",
     reasons.SONAR: "clear the way, or wait until what stands there has gone",

@@ -119,3 +119,38 @@ def test_a_bad_chunk_costs_no_other_one(tmp_path: Path) -> None:
     file = McapFile(path)
     numbers = [line.sequence for line in file.lines() if line.topic == "LOG"]
     assert 80 < len(numbers) < 120 and numbers[-1] == 119
+    assert file.is_damaged and not file.is_whole, "also if its index at the end is good"
+
+
+@pytest.mark.parametrize("byte", [0, 1, 3, 8, 33, 37, 41, 45, 60])  # opcode, length, checksum, compression, length of data, data
+def test_wherever_a_chunk_is_hit_all_others_are_read_and_the_file_as_it_was_stays(tmp_path: Path, byte: int) -> None:
+    path = tmp_path / "a.mcap"
+    writer = filled(path, 30)
+    chunk = [chunk for chunk in writer._chunks if chunk.bulk is Bulk.LOG][2]
+    data = bytearray(path.read_bytes())
+    data[chunk.at.chunk_start_offset + byte] ^= 0x55
+    path.write_bytes(data)
+    file = McapFile(path)
+    numbers = [line.sequence for line in file.lines() if line.topic == "LOG"]
+    lost = sorted(set(range(300)) - set(numbers))
+    assert file.is_damaged and not file.is_whole and len(lost) <= 21, "two seconds are in a chunk"
+    assert repair(file, path) == len(seen_by_the_library(path))
+    assert (tmp_path / "a.mcap.damaged").read_bytes() == data
+
+
+@settings(max_examples=40, deadline=None)
+@given(flips=st.lists(st.tuples(st.floats(0.1, 0.99), st.integers(1, 255)), min_size=1, max_size=20))
+def test_damage_anywhere_costs_what_it_hits_and_no_more(flips: list[tuple[float, int]], tmp_path_factory: pytest.TempPathFactory) -> None:
+    path = tmp_path_factory.getbasetemp() / "long.mcap"
+    if not path.exists():
+        filled(path, 120)
+    data = bytearray(path.read_bytes())
+    for share, bits in flips:
+        data[int(share * len(data))] ^= bits
+    hit = tmp_path_factory.getbasetemp() / "hit.mcap"
+    hit.write_bytes(data)
+    file, whole = McapFile(hit), McapFile(path)
+    lines, wanted = list(file.lines()), {(line.topic, line.sequence): line.data for line in whole.lines()}
+    assert all(wanted[line.topic, line.sequence] == line.data for line in lines), "what is read is what was written"
+    chunk = 1 + max(sum(1 for line in wanted if line[0] == bulk.name and line[1] < 21) for bulk in Bulk)
+    assert len(wanted) - len(lines) <= 2 * chunk * len(flips)

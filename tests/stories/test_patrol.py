@@ -93,6 +93,16 @@ class Raises(BehaviourWithPorts, tag="StoryRaises"):
         raise ZeroDivisionError("a bug in a leaf")
 
 
+class Leaves(Raises, tag="StoryLeaves"):
+    """A leaf that thinks it is a program of its own."""
+
+    INPUT_PORTS = NO_PORTS
+    OUTPUT_PORTS = NO_PORTS
+
+    def update(self) -> Status:
+        raise SystemExit(7)
+
+
 class GivesNothing(Raises, tag="StoryGivesNothing"):
     """A leaf that forgets to return."""
 
@@ -115,10 +125,10 @@ def play(scenario: Play, tmp_path: Any, world: str, leaf: str, **more: Any) -> R
 
 @pytest.mark.parametrize(
     ("leaf", "reason", "says"),
-    [("StoryRaises", "leaf-error", "a bug in a leaf"), ("StoryGivesNothing", "leaf-error", "None")],
+    [("StoryRaises", "leaf-error", "a bug in a leaf"), ("StoryLeaves", "leaf-error", "SystemExit: 7"), ("StoryGivesNothing", "leaf-error", "None")],
 )
 def test_a_bad_leaf_ends_the_run_with_the_robot_at_rest(scenario: Play, square: Any, tmp_path: Any, leaf: str, reason: str, says: str) -> None:
-    run = play(scenario, tmp_path, square(), leaf, nodes=(Raises, GivesNothing))
+    run = play(scenario, tmp_path, square(), leaf, nodes=(Raises, Leaves, GivesNothing))
     assert (run.result, run.reason, run.exit_code) == ("STOPPED", reason, 3)
     assert says in run.text and "bad" in run.text
     assert run.distance_m > 0.2, "it did drive"

@@ -15,6 +15,7 @@ from pluto_bt.playback import replay_file
 from pluto_bt.result import RunResult
 from pluto_bt.resume import ResumeRequest
 from pluto_bt.runner import Runner, make_runner
+from pluto_bt.source import InputError
 from pluto_bt.system import System
 from pluto_bt.trees.journal import read_journal
 
@@ -80,8 +81,10 @@ def test_it_goes_on_from_where_it_was_left(folder: Path) -> None:
 
 def test_held_it_stays_still_and_the_journal_stays(folder: Path) -> None:
     cut_off(folder, 3.0)
-    for _ in range(2):
-        result, _ = run(folder, "hold", max_time_s=None)
+    left = (folder / "journal").read_bytes()
+    for max_time_s in (None, 9.0):
+        result, runner = run(folder, "hold", max_time_s=max_time_s)
+        assert runner.system.clock.now_s() < 1.0 and (folder / "journal").read_bytes() == left
         assert (result.result, result.reason, result.exit_code, result.distance_m) == ("STOPPED", "held", 1, 0.0)
         assert "pluto shell resume" in result.text
     assert run(folder)[0].result == "SUCCESS"
@@ -97,7 +100,7 @@ def test_an_operator_lets_a_held_mission_go_on(folder: Path) -> None:
             let_go.append(system.simulator.distance_m)
             system.operator_resume()
 
-    result, _ = run(folder, "hold", on_progress=progress, said=said)
+    result, _ = run(folder, "hold", on_progress=progress, said=said, gateway="127.0.0.1:0")
     assert let_go == [0.0] and result.result == "SUCCESS" and said == ["one", "two"]
 
 
@@ -130,8 +133,69 @@ DOUBTS = {
 def test_what_is_not_sane_is_held_whatever_the_policy(folder: Path, doubt: str) -> None:
     cut_off(folder, 3.0)
     DOUBTS[doubt](folder)
+    for _ in range(2):  # and again: what was in doubt once is not forgotten by the next start
+        result, _ = run(folder, max_time_s=None)
+        assert (result.reason, result.distance_m) == ("held", 0.0) and doubt in result.text
+
+
+def damage(folder: Path, number: int, old: bytes = b"{", new: bytes = b"X") -> None:
+    """Spoil one line of the journal, counted from 1."""
+    lines = (folder / "journal").read_bytes().splitlines(keepends=True)
+    assert old in lines[number - 1]
+    lines[number - 1] = lines[number - 1].replace(old, new, 1)
+    (folder / "journal").write_bytes(b"".join(lines))
+
+
+DAMAGES = [(1, b"begin", b"bogin"), (1, b"{", b""), (2, b"{", b"X"), (4, b'"pose"', b'"nose"'), (4, b"[", b"[1"), (5, b"{", b"\xff")]
+
+
+@pytest.mark.parametrize(("number", "old", "new"), DAMAGES)
+def test_a_damaged_journal_is_held_whatever_the_policy_and_stays_as_it_is(folder: Path, number: int, old: bytes, new: bytes) -> None:
+    cut_off(folder, 3.0)
+    damage(folder, number, old, new)
+    found = (folder / "journal").read_bytes()
+    for policy in ("resume", "hold"):
+        result, _ = run(folder, policy, max_time_s=None)
+        assert (result.reason, result.distance_m) == ("held", 0.0) and f"the journal is damaged at line {number}" in result.text
+        assert (folder / "journal").read_bytes() == found
+
+
+def test_a_journal_without_its_first_line_is_damaged(folder: Path) -> None:
+    cut_off(folder, 3.0)
+    (folder / "journal").write_bytes((folder / "journal").read_bytes().split(b"\n", 1)[1])
     result, _ = run(folder, max_time_s=None)
-    assert (result.reason, result.distance_m) == ("held", 0.0) and doubt in result.text
+    assert result.reason == "held" and "damaged at line 1" in result.text and "has changed" not in result.text
+
+
+def test_let_go_with_a_damaged_journal_no_side_effect_is_repeated_and_a_copy_stays(folder: Path) -> None:
+    """The line that tells that `there` was reached is lost: it drives there again, but what was said stays said."""
+    said: list[str] = []
+    cut_off(folder, 8.0, said)
+    assert said == ["one", "two"]
+    lines = (folder / "journal").read_bytes().splitlines()
+    damage(folder, next(i for i, line in enumerate(lines, 1) if b'["there","SUCCESS"]' in line))
+    found = (folder / "journal").read_bytes()
+    result, _ = run(folder, "hold", on_progress=lambda system: system.operator_resume(), said=said, gateway="127.0.0.1:0")
+    assert result.result == "SUCCESS" and said == ["one", "two"]
+    assert (folder / "journal.damaged").read_bytes() == found
+    past = read_journal(folder / "journal")
+    assert past is not None and not past.has_begun and not past.damaged_line
+
+
+@pytest.mark.parametrize("notes", [b"notes\n", b"notes", b"\n", b'{"t": 1, "tick": 2}\n', b"\x89PNG\r\n\x1a\n"])
+def test_a_file_that_is_no_journal_is_refused_and_not_written_over(folder: Path, notes: bytes) -> None:
+    (folder / "journal").write_bytes(notes)
+    with pytest.raises(InputError, match="no journal of a mission") as told:
+        made(folder, "hold")
+    assert [fault.code for fault in told.value.faults] == ["no-journal"] and (folder / "journal").read_bytes() == notes
+
+
+def test_that_it_goes_on_is_told(folder: Path) -> None:
+    cut_off(folder, 3.0)
+    heard: list[tuple[str, str]] = []
+    run(folder, on_event=lambda event: heard.append((event.code, event.text)))
+    text = next(text for code, text in heard if code == "resumed")
+    assert "was cut off" in text and text.endswith("after first had ended; it goes on there")
 
 
 def test_a_robot_that_was_moved_meanwhile_is_held(folder: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from pluto_bt.runtime.latch import ESTOP
 from pluto_bt.scenario import Play
 from pluto_bt.source import Faults
 from pluto_bt.system import System
+from pluto_bt.trees import load_mission
 from pluto_bt.trees.why import Cause
 from pluto_bt.trees.why_box import why_at
 from tests.stories.test_faults import GONE, ROWS, FaultRow, faulty, platform_for
@@ -122,6 +124,39 @@ def test_a_wall_across_the_way_is_seen_by_the_laser(tmp_path: Path) -> None:
     assert told.count(sentence) == 1 and told.endswith("mission m running") and ": the same\n" in told, "what one link hands to the next is told once"
 
 
+WAITING = {
+    "Delay": '<Delay name="pause" delay_msec="60000"><Say text="x"/></Delay>',
+    "WaitValueUpdate": '<Sequence><Script code="k := 1"/> <Repeat num_cycles="2"><WaitValueUpdate entry="{k}">'
+    '<Say text="x"/></WaitValueUpdate></Repeat></Sequence>',
+    "Precondition": '<Sequence><Script code="k := 1"/><Precondition if="k == 2" else="RUNNING"><Say text="x"/></Precondition></Sequence>',
+}
+
+
+@pytest.mark.parametrize("kind", WAITING)
+def test_a_decorator_that_waits_itself_is_named_with_what_would_end_it(tmp_path: Path, kind: str) -> None:
+    causes = acted(tmp_path, lambda system: None, 9.0, 2.0, leaf=WAITING[kind])
+    assert [cause.layer for cause in causes] == ["node", "mission"] and causes[0].code == "running"
+    assert f"({kind}): waits " in causes[0].text and causes[0].unblock
+
+
+def test_an_operator_who_ends_a_paused_mission_is_named_also_after_an_errand(tmp_path: Path) -> None:
+    def act(system: System) -> None:
+        system.operator_stop("anna")
+        system.latch.release("operator-stop")  # as the command for an errand does
+        system.executive.core.start_errand(load_mission('<root BTCPP_format="4"><BehaviorTree ID="e"><Say text="hi"/></BehaviorTree></root>'))
+        system.executive.core.abort("stopped")
+
+    acted(tmp_path, act, 3.0, 6.0)
+    first = why_at(opened(tmp_path / "a.mcap")).first
+    assert first is not None and (first.layer, first.text) == ("operator", "an operator ended the mission")
+
+
+def test_past_its_end_a_run_that_succeeded_is_told_as_at_its_end(tmp_path: Path) -> None:
+    acted(tmp_path, lambda system: None, 99.0, 60.0, leaf='<GoTo goal="-3;0"/>')
+    box = opened(tmp_path / "a.mcap")
+    assert why_at(box, 9999.0) == why_at(box) and [(cause.layer, cause.code) for cause in why_at(box).causes] == [("mission", "succeeded")]
+
+
 def test_the_command_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     acted(tmp_path, lambda system: system.operator_stop("anna"), 3.0, 6.0)
     assert main(["why", str(tmp_path / "a.mcap"), "--at", "5"]) == 0
@@ -134,3 +169,11 @@ def test_the_command_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     capsys.readouterr()
     assert main(["why", str(tmp_path / "a.mcap"), "--at", "300"]) == main(["why", str(tmp_path / "a.mcap")]) == 0
     assert capsys.readouterr().out.count("not moving when the run ended, at ") == 2
+
+
+def test_where_nobody_listens_it_says_what_would_help_and_what_a_robot_may_still_be_doing(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as held:  # bound and not listening: nobody else can take the port meanwhile
+        held.bind(("127.0.0.1", 0))
+        assert main(["why", "--gateway", f"127.0.0.1:{held.getsockname()[1]}"]) == 1
+    told = capsys.readouterr().err
+    assert "no gateway at 127.0.0.1" in told and "--realtime" in told and "compiling kernels" in told

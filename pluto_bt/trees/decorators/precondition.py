@@ -30,6 +30,7 @@ class Precondition(DecoratorNode):
             if self.script is None:
                 self.fail("port 'if' is missing")
             self.working = self.script.is_true(self)
+            self.feedback_message = "waits for its condition" if otherwise is RUNNING and not self.working else ""
             if not self.working:
                 return self.end_as(otherwise, "else")
         result: Result = self.child.step()

@@ -76,6 +76,7 @@ class Delay(Timed):
             start(self)
             self.over = delay_ms == 0
             if not self.over:
+                self.feedback_message = f"waits {delay_ms / 1000:g} s before its child"
                 self.timer = self.context.call_in(delay_ms / 1000, self._wake)
         if not self.over:
             return RUNNING
@@ -86,4 +87,5 @@ class Delay(Timed):
 
     def _wake(self) -> None:
         self.over = True
+        self.feedback_message = ""
         self.context.wake_up()

@@ -46,7 +46,9 @@ class EntryUpdated(DecoratorNode):
             if self.OTHERWISE is SKIPPED:
                 return self.skip()
             self.status = RUNNING
+            self.feedback_message = "waits for a new value" if self.watch is None else f"waits for a new value of {self.watch.key}"
             return RUNNING
+        self.feedback_message = ""
         result: Result = self.child.step()
         self.working = result is RUNNING
         if result is SKIPPED:

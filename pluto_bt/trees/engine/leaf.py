@@ -20,7 +20,7 @@ from py_trees.ports import NoDataAvailable
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
-from pluto_bt.trees.errors import StepError
+from pluto_bt.trees.errors import RAISED, StepError
 
 
 def bind_leaf(leaf: Any, context: Context) -> None:
@@ -46,7 +46,7 @@ def _plain_step(leaf: Any, context: Context) -> Callable[[], Result]:
         context.current = leaf
         try:
             new: Status = update()
-        except Exception as error:
+        except RAISED as error:
             return _without_input(leaf, error)
         if new is SUCCESS or new is FAILURE or new is RUNNING:
             leaf.status = new
@@ -69,7 +69,7 @@ def _full_step(leaf: Any, context: Context) -> Callable[[], Result]:
                 terminate(new)
                 leaf.status = new
                 return new
-        except Exception as error:
+        except RAISED as error:
             return _without_input(leaf, error)
         if new is RUNNING:
             leaf.status = new
@@ -86,20 +86,20 @@ def _no_status(leaf: Any, context: Context, answer: object) -> Skip:
     raise StepError(leaf, f"update() returned {answer!r}, which is no status")
 
 
-def _without_input(leaf: Any, error: Exception) -> Status:
+def _without_input(leaf: Any, error: BaseException) -> Status:
     """FAILURE of a leaf of ours that lacks an input. Raises: StepError for every other error, and of other people's leaves."""
     if not (isinstance(error, NoDataAvailable) and isinstance(leaf, Leaf)):
         raise _blamed(leaf, error) from error
     leaf.fail("no-input", str(error))
     try:
         leaf.terminate(FAILURE)
-    except Exception as another:
+    except RAISED as another:
         raise _blamed(leaf, another) from another
     leaf.status = FAILURE
     return FAILURE
 
 
-def _blamed(leaf: Any, error: Exception) -> StepError:
+def _blamed(leaf: Any, error: BaseException) -> StepError:
     return error if isinstance(error, StepError) else StepError(leaf, told(error))
 
 
@@ -108,7 +108,7 @@ def _foreign_step(leaf: Any, context: Context) -> Callable[[], Result]:
         context.current = leaf
         try:
             leaf.tick_once()
-        except Exception as error:
+        except RAISED as error:
             raise StepError(leaf, told(error)) from error
         status: Status = leaf.status
         if status is IDLE:
@@ -134,7 +134,7 @@ def _halt(leaf: Any) -> Callable[[], None]:
                     leaf.terminate(IDLE)
                 else:
                     leaf.stop(IDLE)
-            except Exception as error:
+            except RAISED as error:
                 raise StepError(leaf, told(error)) from error
             finally:
                 leaf.status = IDLE
@@ -142,7 +142,7 @@ def _halt(leaf: Any) -> Callable[[], None]:
     return halt
 
 
-def told(error: Exception) -> str:
+def told(error: BaseException) -> str:
     """An exception in one line, with the place in the leaf's own file where it was raised."""
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     places = [frame for frame in traceback.extract_tb(error.__traceback__) if "/pluto_bt/trees/" not in frame.filename.replace(os.sep, "/")]

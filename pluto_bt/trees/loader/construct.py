@@ -18,6 +18,7 @@ from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.leaf import bind_leaf, told
 from pluto_bt.trees.engine.node import Node
 from pluto_bt.trees.engine.status import SKIPPED, Result
+from pluto_bt.trees.errors import RAISED
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
@@ -79,7 +80,7 @@ class Construction:
             return self._joined(SubTree(plan.name, tree_id=plan.tree_id))
         try:
             node = node_type.make(name=plan.name)
-        except Exception as error:
+        except RAISED as error:
             what = f"<{node_type.name}> could not be built: {told(error)}"
             self._report.error(plan.element.place, "leaf-failed", what, expected=f"{node_type.name}(name=…) to work", found=type(error).__name__)
             return None
@@ -134,6 +135,6 @@ class Construction:
                 continue
             try:
                 tracked.node.setup(clock=self._context.clock, blackboard=BoardView(tracked.plan.scope))
-            except Exception as error:
+            except RAISED as error:
                 what = f"<{tracked.plan.type_name}> could not be set up: {told(error)}"
                 self._report.error(tracked.plan.element.place, "setup-failed", what, expected="setup() to work", found=type(error).__name__)
