@@ -279,6 +279,21 @@ def test_a_leaf_whose_device_the_robot_does_not_have(
     assert [f"{fault['line']}:{fault['column']} {fault['severity']} {fault['code']}" for fault in found] == faults
 
 
+def test_a_map_without_a_start_says_nothing_of_the_first_way_and_start_gives_one(capsys: pytest.CaptureFixture[str]) -> None:
+    pixels = np.full((60, 120), 254, np.uint8)
+    pixels[[0, -1], :] = pixels[:, [0, -1]] = 0  # a room of 12 m by 6 m, whose corner is the origin
+    Path("room.pgm").write_bytes(b"P5 120 60 255\n" + pixels.tobytes())
+    Path("room.yaml").write_text("image: room.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n")
+    body = '<NavigateTo goal="9;3"/>'
+    faults, answer = checked(capsys, body, "--world", "room.yaml")
+    assert (faults, answer["legs"][0]["start"], answer["legs"][0]["distance_m"]) == ([], None, None)
+    faults, answer = checked(capsys, body, "--world", "room.yaml", "--start", "3,3,0")
+    assert (faults, answer["legs"][0]["start"]) == ([], [3.0, 3.0]) and answer["legs"][0]["distance_m"] == pytest.approx(6.0, abs=0.3)
+    faults, _ = checked(capsys, body, "--world", "room.yaml", "--start", "0,0,0")
+    assert "0:0 error start-blocked" in faults
+    assert checked(capsys, '<NavigateTo goal="6;5"/>', "--start", "3;3")[0] == ["0:0 error bad-value"]
+
+
 def test_a_leg_begins_where_the_one_to_a_named_goal_ended(capsys: pytest.CaptureFixture[str]) -> None:
     body = '<NavigateTo goal="gate"/><NavigateTo goal="6;5"/><NavigateTo goal="gate"/>'
     _, answer = checked(capsys, body)
