@@ -60,6 +60,12 @@ LEGS = [
     ("near enough counts as there", '<GoTo goal="7.3;5" tolerance_m="0.5"/>', []),
     ("a planned way round", '<NavigateTo goal="12;5"/>', []),
     ("a goal by its name", '<NavigateTo goal="gate"/>', []),
+    ("what is planned is judged where it is planned", '<ComputePathToPose goal="17;8.5" path="{p}"/>', ["2:26 error no-way"]),
+    ("who only plans stays where it is", '<PlanPath goal="12;8" path="{p}"/><GoTo goal="12;5"/>', ["2:47 warning leg-blocked"]),
+    ("from a place of its own it may find a way", '<PlanPath goal="17;8.5" start="17;9" path="{p}"/>', []),
+    ("a name that is no goal to plan to", '<ComputePathToPose goal="gtae" path="{p}"/>', ["2:26 error unknown-goal"]),
+    ("a name that is no goal, in an entry", '<SubTree ID="Go" place="gtae"/></Sequence></BehaviorTree>\n'
+     '<BehaviorTree ID="Go"><Sequence><ComputePathToPose goal="{place}" path="{p}"/>', ["3:58 error unknown-goal"]),
     ("a name that is no goal", '<NavigateTo goal="gtae"/>', ["2:19 error unknown-goal"]),
     ("home, which this world has not", '<NavigateTo goal="home"/>', ["2:19 error unknown-goal"]),
     ("one goal after the other", '<NavigateThroughPoses goals="6,5;gate;9,5"/>', ["2:30 error goal-blocked"]),

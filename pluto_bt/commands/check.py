@@ -43,7 +43,7 @@ def _parser() -> Parser:
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--format", choices=tuple(FORMATS), default="text")
     parser.add_argument("--world", metavar="W", help="drive the legs of the missions in thought through this world")
-    parser.add_argument("--start", metavar="X,Y,DEG", help="with --world: where the robot starts (default: the world's; else the first leg is not judged)")
+    parser.add_argument("--start", metavar="X,Y,DEG", help="with --world: where the robot starts (default: the world's, else not known)")
     parser.add_argument("--platform", metavar="P", help="the robot that is to run the missions (default: the world's)")
     parser.add_argument("--tree", metavar="ID", help="the tree to check, if not the main one")
     parser.add_argument("--port", metavar="NAME=VALUE", action="append", default=[], help="an input of the main tree; may be repeated")

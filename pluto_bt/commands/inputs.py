@@ -119,7 +119,9 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
                   tuple(request.plugin), params)  # fmt: skip
 
 
-def check_world(name: str, platform: str | None, faults: Faults, start: Pose | None = None, asked: str | None = None) -> tuple[World | None, RobotFile | None]:
+def check_world(
+    name: str, platform: str | None, faults: Faults, start: Pose | None = None, asked: str | None = None
+) -> tuple[World | None, RobotFile | None]:
     """Check a world alone: its file, its robot and that one's place (`start`, as `asked` with `--start`, before the world's own), the topics and
     modules of its script. Returns what could be read."""
     world = _world(name, faults, None)
