@@ -70,6 +70,7 @@ class Flow:
         if plan.children and not outer and plan.type_name not in ONCE:
             uses = [(one.scope, use) for one in plan.walk() for some in self._uses[id(one)] for use in some]
             self._in_rounds = frozenset(self._home(scope, use.key) for scope, use in uses if use.how == "write")
+            certain = True  # whether a tick comes here or not: the first one that does finds no earlier round
         for child in plan.children:
             self._visit(child, certain)
             certain = certain and self._ends[id(child)] == S
@@ -85,6 +86,16 @@ class Flow:
                 self._tell(plan.scope, use, home)
             if use.how != "read":
                 self._written.add(home)
+                self._check_may_write(plan.scope, use)
+
+    def _check_may_write(self, scope: Scope, use: Use) -> None:
+        owner, name = home_of(scope, use.key)
+        place = use.place
+        if owner is not self._board.root or name not in self._board.topic_names or (place.file, place.line, place.column) in self._told:
+            return
+        self._told.add((place.file, place.line, place.column))
+        what, mend = f'"{use.key}" is a topic of the robot, which a mission only reads', "write an entry of your own"
+        self._report.late(place, "read-only", what, expected="an entry", found=f"the topic {name}", mend=mend)
 
     def _home(self, scope: Scope, key: str) -> Home:
         owner, name = home_of(scope, key)
