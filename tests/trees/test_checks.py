@@ -246,6 +246,64 @@ def test_a_read_that_is_called_too_early_never_succeeds(body: str) -> None:
             assert not done
 
 
+X = '<Script code="x := 1"/>'
+CERTAIN = [
+    # what it shows                     body                                                                            faults
+    ("a text for a number", f"<Sequence>{X}<Script code=\"x := 't'\"/></Sequence>", ["2:48 error script-fails"]),
+    ("a number in digits", f"<Sequence>{X}<Script code=\"x := '7'\"/></Sequence>", []),
+    ("a number for a text", "<Script code=\"x := 't'; x := 3\"/>", ["2:25 error script-fails"]),
+    ("half of a whole number", '<Script code="x := 5; x /= 2"/>', ["2:23 error script-fails"]),
+    ("half of an even one", '<Script code="x := 6; x /= 2"/>', []),
+    ("bits of a fraction", '<Script code="a := 1.5 &amp; 2"/>', ["2:15 error script-fails"]),
+    ("a sum with a text", "<Script code=\"x := 't'; z := x + 1\"/>", ["2:30 error script-fails"]),
+    ("a text is no answer", "<ScriptCondition code=\"'t'\"/>", ["2:24 error script-fails"]),
+    ("nor is it of a condition", f'<Sequence>{X}<Sleep msec="1" _skipIf="x + 1"/></Sequence>', []),
+    ("two is neither true nor false", '<Sequence><Script code="x := 2"/><Sleep msec="1" _skipIf="x"/></Sequence>', ["2:59 error script-fails"]),
+    ("a number is no goal", f'<Sequence>{X}<GoTo goal="{{x}}"/></Sequence>', ["2:46 error bad-literal"]),
+    ("a time below 0", '<Sequence><Script code="n := -1"/><Sleep msec="{n}"/></Sequence>', ["2:48 error bad-literal"]),
+    ("below its limit", '<Sequence><Script code="n := 0.001"/><GoTo goal="4;3" tolerance_m="{n}"/></Sequence>', ["2:68 error bad-literal"]),
+    ("through a SubTree", f'<Sequence>{X}<SubTree ID="B" goal="{{x}}"/></Sequence>', ["4:34 error bad-literal"]),
+    ("a literal of a SubTree", '<SubTree ID="B" goal="door"/>', ["4:34 error bad-literal"]),
+    ("a branch may have changed it", f"<Sequence>{X}<Fallback><IsStuck/><Script code=\"x := '7;7'\"/></Fallback><GoTo goal=\"{{x}}\"/></Sequence>", []),
+    ("a round before may have changed it",
+     f'<Sequence>{X}<Repeat num_cycles="2"><Sequence><Fallback><IsStuck/><Script code="x &amp; 1.5"/></Fallback><GoTo goal="1;2"/>'
+     '<Script code="x := 2.0"/></Sequence></Repeat></Sequence>', []),
+    ("a leaf has written it", f'<Sequence>{X}<GoTo goal="1;2" reason="{{y}}"/><Script code="y + 1"/></Sequence>', []),
+    ("a condition keeps it from being reached", f"<Fallback><Sequence>{X}<ScriptCondition code=\"x == 2\"/><Script code=\"x := 't'\"/></Sequence>"
+     "<AlwaysSuccess/></Fallback>", []),
+    ("a node that is always passed over", f"<Sequence>{X}<Script code=\"x := 't'\" _skipIf=\"x == 1\"/></Sequence>", []),
+    ("an entry that was taken away", f"<Sequence>{X}<UnsetBlackboard key=\"x\"/><Script code=\"x := 't'\"/></Sequence>", []),
+    ("a topic is what it is", '<Script code="a := @Localization_Pose_x &amp; 1"/>', []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "faults"), [row[1:] for row in CERTAIN], ids=[row[0] for row in CERTAIN])
+def test_values_that_are_certain_must_fit(body: str, faults: list[str]) -> None:
+    assert [one for one in told(body, tree("B", '<GoTo goal="{goal}"/>')) if "unused-tree" not in one] == faults
+
+
+SUMS = st.sampled_from([OK, "<AlwaysFailure/>", '<ScriptCondition code="a"/>', '<Script code="x := 1"/>', "<Script code=\"x := 't'\"/>",
+                        '<Script code="x := 2.5"/>', '<Script code="y := x; y /= 2"/>', '<Script code="x &amp; 1"/>', '<Script code="z := x + 1"/>',
+                        '<Sleep msec="{z}"/>', "<Script code=\"x := '3'\" _skipIf=\"x == 1\" _onSuccess=\"y := 5\"/>",
+                        '<ScriptCondition code="y == 1"/>', '<SubTree ID="B" v="{x}" w="{y}"/>', '<UnsetBlackboard key="x"/>'])  # fmt: skip
+
+
+@given(st.recursive(SUMS, branches, max_leaves=14))
+@settings(max_examples=60, deadline=None)
+def test_what_is_said_to_fail_never_succeeds(body: str) -> None:
+    text = mission(body.replace("_successIf", "_onSuccess").replace('"b"', '"y := 2"'), tree("B", '<Script code="w := v"/>'))
+    surely = {(fault.line, fault.column) for fault in check_mission(text, ports={"a": "1"}) if fault.code in ("script-fails", "bad-literal")}
+    for a in (0, 1):
+        loaded = load_mission(text, blackboard={"a": a})
+        failing = {one.path for one in loaded.nodes() if any(holds(attribute, surely) for attribute in one.plan.element.attributes.values())}
+        for _ in range(4):
+            try:
+                loaded.tick_exactly_once()
+            except TickError:
+                break
+            assert not [path for path, status in loaded.statuses().items() if path in failing and status in ("SUCCESS", "FAILURE")]
+
+
 DRIVES = [
     ('<Parallel><GoTo goal="1;2"/><DriveVelocity/></Parallel>', ["2:29 error parallel-drive"]),
     ('<Parallel><Say text="x"/><DriveVelocity/></Parallel>', []),

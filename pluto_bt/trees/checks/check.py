@@ -9,6 +9,7 @@ from typing import Any
 
 from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Fault
+from pluto_bt.trees.checks.constants import Constants
 from pluto_bt.trees.checks.driving import check_driving
 from pluto_bt.trees.checks.flow import Flow
 from pluto_bt.trees.checks.outcomes import Ends, outcome
@@ -89,5 +90,7 @@ def _check_whole(reading: Reading, root: Plan) -> None:
     inputs = {name: port for name, port in model.ports.items() if port.direction != "out"} if model is not None else {}
     flow = Flow(reading.board, inputs, ends, report)
     flow.run(nodes)
+    given = {*inputs, *flow.loose}
+    Constants(reading.board, flow.uses, given, report, is_closed=flow.is_closed).visit(root)
     looks = [element.attributes[name] for element in reading.files.contracts for name in ("when", "always") if element.get(name)]
     flow.run_beside(looks)
