@@ -264,7 +264,8 @@ CERTAIN = [
     ("below its limit", '<Sequence><Script code="n := 0.001"/><GoTo goal="4;3" tolerance_m="{n}"/></Sequence>', ["2:68 error bad-literal"]),
     ("through a SubTree", f'<Sequence>{X}<SubTree ID="B" goal="{{x}}"/></Sequence>', ["4:34 error bad-literal"]),
     ("a literal of a SubTree", '<SubTree ID="B" goal="door"/>', ["4:34 error bad-literal"]),
-    ("a branch may have changed it", f"<Sequence>{X}<Fallback><IsStuck/><Script code=\"x := '7;7'\"/></Fallback><GoTo goal=\"{{x}}\"/></Sequence>", []),
+    ("a branch may have changed it",
+     f"<Sequence>{X}<Fallback><IsStuck/><Script code=\"x := '7;7'\"/></Fallback><GoTo goal=\"{{x}}\"/></Sequence>", []),
     ("a round before may have changed it",
      f'<Sequence>{X}<Repeat num_cycles="2"><Sequence><Fallback><IsStuck/><Script code="x &amp; 1.5"/></Fallback><GoTo goal="1;2"/>'
      '<Script code="x := 2.0"/></Sequence></Repeat></Sequence>', []),
@@ -280,6 +281,13 @@ CERTAIN = [
 @pytest.mark.parametrize(("body", "faults"), [row[1:] for row in CERTAIN], ids=[row[0] for row in CERTAIN])
 def test_values_that_are_certain_must_fit(body: str, faults: list[str]) -> None:
     assert [one for one in told(body, tree("B", '<GoTo goal="{goal}"/>')) if "unused-tree" not in one] == faults
+
+
+def test_an_input_is_looked_through_at_the_port_it_ends_in() -> None:
+    (fault,) = check_mission(mission('<SubTree ID="B" goal="{place}"/>', tree("B", '<GoTo goal="{goal}"/>')), ports={"place": "door"})
+    assert (fault.severity, fault.code, fault.line) == ("error", "bad-literal", 4)
+    assert fault.message.startswith("entry \"goal\" is text 'door' here")
+    assert fault.mend == "it is an input: give another value with --port place=VALUE"
 
 
 SUMS = st.sampled_from([OK, "<AlwaysFailure/>", '<ScriptCondition code="a"/>', '<Script code="x := 1"/>', "<Script code=\"x := 't'\"/>",

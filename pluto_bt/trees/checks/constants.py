@@ -103,7 +103,9 @@ class Constants:
         if problem:
             what = f'entry "{key}" is {shown(entry.value)} here, which does not fit port "{port.name}"'
             home = home_key(plan, key)
-            self._tell(attribute.value_place, "bad-literal", what, port.form, problem, self._since.get(home))
+            is_input = home not in self._since and home[0] == id(self._board.root)
+            mend = f"it is an input: give another value with --port {home[1]}=VALUE" if is_input else ""
+            self._tell(attribute.value_place, "bad-literal", what, port.form, problem, self._since.get(home), mend)
             self._forget([home])
 
     def _script(self, plan: Plan, attribute: XmlAttribute | None, *, is_asked: bool) -> bool | None:
@@ -178,12 +180,12 @@ class Constants:
         attributes = [plan.element.attributes[name] for name in names if name in plan.element.attributes]
         self._forget(home_key(plan, use.key) for attribute in attributes for use in script_uses(attribute) if use.how != "read")
 
-    def _tell(self, place: Place, code: str, what: str, expected: str, found: str, since: Place | None) -> None:
+    def _tell(self, place: Place, code: str, what: str, expected: str, found: str, since: Place | None, mend: str = "") -> None:
         if (place.file, place.line, place.column) in self._told:
             return
         self._told.add((place.file, place.line, place.column))
         tell = self._report.late if self._is_closed else self._report.warning
-        mend = f"its value comes from {since.file or '<text>'}:{since.line}:{since.column}" if since is not None else ""
+        mend = f"its value comes from {since.file or '<text>'}:{since.line}:{since.column}" if since is not None else mend
         tell(place, code, what, expected=expected, found=found, mend=mend)
 
 
