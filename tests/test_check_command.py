@@ -351,6 +351,13 @@ def test_numbers_that_are_none_are_told_as_what_they_are(capsys: pytest.CaptureF
     assert "got str" not in told and "NaN" in told and "a number >= 0" in told
 
 
+def test_more_faults_than_can_be_told_are_not_counted_as_all(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("m.xml").write_text(MISSION.format(body="<Foo/>\n" * 1500), encoding="utf-8")
+    assert main(["check", "m.xml"]) == 2
+    told = capsys.readouterr()
+    assert told.err == "1 checked, more than 999 errors, 0 warnings\n" and "there are more errors than can be told" in told.out[-200:]
+
+
 def test_nodes_by_name(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["nodes", "GoTo"]) == 0
     told = capsys.readouterr().out

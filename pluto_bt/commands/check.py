@@ -14,7 +14,8 @@ from pluto_bt.commands.fault_formats import FORMATS
 from pluto_bt.commands.files import find_shipped, shipped_names
 from pluto_bt.commands.option_values import Pose, read_start
 from pluto_bt.commands.options import Parser
-from pluto_bt.source import Faults, InputError, Place, did_you_mean
+from pluto_bt.source import Fault, Faults, InputError, Place, did_you_mean
+from pluto_bt.source.faults import TOO_MANY
 from pluto_bt.source.text import read_bytes
 
 if TYPE_CHECKING:
@@ -125,6 +126,11 @@ def _print(args: argparse.Namespace, faults: Faults, legs: list[LegTold]) -> Non
         from pluto_bt.commands.legs_in_world import sum_of
 
         print(sum_of(legs))
-    errors = sum(fault.severity == "error" for fault in found)
-    warnings = len(found) - errors
-    print(f"{len(args.files)} checked, {errors} error{'s' * (errors != 1)}, {warnings} warning{'s' * (warnings != 1)}", file=sys.stderr)
+    print(f"{len(args.files)} checked, {_count(found, 'error')}, {_count(found, 'warning')}", file=sys.stderr)
+
+
+def _count(found: list[Fault], severity: str) -> str:
+    """How many there are of a severity; "more than" where not all could be told."""
+    told = [fault for fault in found if fault.severity == severity and fault.code != TOO_MANY]
+    more = "more than " * any(fault.severity == severity and fault.code == TOO_MANY for fault in found)
+    return f"{more}{len(told)} {severity}{'s' * (len(told) != 1)}"

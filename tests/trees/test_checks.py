@@ -418,6 +418,41 @@ def test_trees_that_the_main_tree_does_not_use(more: str, faults: list[str]) -> 
     assert told(OK, more) == [f"4:{fault}" for fault in faults]
 
 
+MODEL = '<TreeNodesModel><SubTree ID="S"><input_port name="place" default="1;2"/></SubTree></TreeNodesModel>'
+USES = tree("S", '<Sequence><GoTo goal="{place}"/><Say text="{word}"/><Script code="n := round"/></Sequence>')
+
+
+@pytest.mark.parametrize(("ports", "faults", "mend"), [
+    ('plce="3;4" word="a" round="1"', ["2:17 warning unknown-port"], 'did you mean "place"?'),
+    ('word="a" round="1" other="5"', ["2:36 warning unknown-port"], ""),
+    ('place="3;4" word="a" round="1"', [], ""),
+])  # fmt: skip
+def test_a_port_of_a_subtree_that_neither_its_model_nor_anything_in_it_knows(ports: str, faults: list[str], mend: str) -> None:
+    body = f'<SubTree ID="S" {ports}/>'
+    assert told(body, USES + MODEL) == faults
+    assert [fault.mend for fault in check_mission(mission(body, USES + MODEL))] == [mend] * len(faults)
+    assert not [one for one in told(body, USES) if "unknown-port" in one], "without a model any port may be meant"
+
+
+@pytest.mark.parametrize(("cases", "columns"), [
+    ('case_1="1" case_2="1"', [64]), ('case_1="1" case_2="2"', []), ('case_1="a" case_2="{b}"', []), ('case_2="x" case_1="x"', [53]),
+    ('case_1="1" case_2="1.0"', [64]),
+])  # fmt: skip
+def test_a_case_that_an_earlier_one_always_takes(cases: str, columns: list[int]) -> None:
+    body = f"<Sequence><Script code=\"b := 'v'\"/><Switch2 {cases} variable=\"{{b}}\">{OK * 3}</Switch2></Sequence>"
+    assert [one for one in told(body) if "unset-key" not in one] == [f"2:{column} warning unreachable" for column in columns]
+
+
+def test_where_the_main_tree_is_not_said_each_that_may_be_it_is_looked_at() -> None:
+    trees = tree("a.b", OK), tree("M", '<Sequence><Say text="{zz}"/><SubTree ID="M"/></Sequence>'), tree("N", '<SubTree ID="C"/>')
+    text = '<root BTCPP_format="4">' + "\n".join([*trees, tree("C", '<GoTo goal="{=}" tolerance_m="{=}"/><Foo/>')]) + "</root>"
+    faults = check_mission(text, topics=TopicGlobals())
+    assert [f"{one.line} {one.severity} {one.code}" for one in faults] == [
+        "1 error no-main-tree", "1 error bad-id", "2 warning unset-key", "2 error recursion", "4 error child-count",
+        "4 warning unset-key", "4 warning unset-key", "4 error unknown-node"]  # fmt: skip
+    assert faults[0].mend == 'add main_tree_to_execute="M" to <root>, or give --tree'
+
+
 def test_all_faults_are_told_though_an_included_file_is_missing() -> None:
     """What may be in that file is not called unknown; all else is."""
     text = ('''<root BTCPP_format="4" main_tree_to_execute="A"><include path="nowhere.xml"/><BehaviorTree ID="A"><Sequence>

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -18,9 +18,10 @@ from pluto_bt.trees.checks.robot_words import check_words
 from pluto_bt.trees.checks.unused import check_unused
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.expand import Plan
-from pluto_bt.trees.loader.load import Reading, build, no_collecting, read_mission
+from pluto_bt.trees.loader.files import TreeSource
+from pluto_bt.trees.loader.load import Reading, build, no_collecting, read_mission, unfold
 from pluto_bt.trees.mission import Mission
-from pluto_bt.trees.scopes import Topics
+from pluto_bt.trees.scopes import Board, Topics
 
 
 @dataclass(frozen=True)
@@ -61,8 +62,11 @@ def examine_mission(
         reading = read_mission(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
         if whole and reading.plan is not None and reading.main is not None and not reading.report.faults.is_full:
             _check_whole(reading, reading.plan)
+        for main in reading.candidates if whole else ():
+            _check_candidate(reading, main)
         check_unused(reading.unused, reading.files, reading.types, reading.report)
-        return Examined(reading.report.faults.in_order(), reading.plan)
+        found = dict.fromkeys(reading.report.faults.in_order())  # what two candidates use is told once
+        return Examined(tuple(found), reading.plan)
 
 
 def load_checked(text_or_path: str | Path, nodes: Iterable[Any] = (), clock: MissionClock | None = None, *, topics: Topics | None = None) -> Mission:
@@ -75,6 +79,15 @@ def load_checked(text_or_path: str | Path, nodes: Iterable[Any] = (), clock: Mis
         if faults.has_errors:
             raise MissionError(tuple(fault for fault in faults.in_order() if fault.severity == "error"))
         return build(reading, clock)
+
+
+def _check_candidate(reading: Reading, main: TreeSource) -> None:
+    """What is wrong with a tree that may be meant as the main one, where that is not said."""
+    if not reading.report.faults.is_full:
+        one = replace(reading, board=Board(reading.board.topics), report=reading.report.doubtful)
+        unfold(one, main, None)
+        if one.plan is not None:
+            _check_whole(one, one.plan)
 
 
 def _check_whole(reading: Reading, root: Plan) -> None:
