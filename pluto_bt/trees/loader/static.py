@@ -112,7 +112,9 @@ class StaticCheck:
     def _check_subtree_ports(self, element: XmlElement) -> None:
         """A port that neither the model nor the tree itself knows; BehaviorTree.CPP takes any."""
         tree, model = self._files.trees.get(element.get("ID")), self._files.subtree_models.get(element.get("ID"))
-        for attribute in element.attributes.values() if tree is not None and model is not None else ():
+        if tree is None or model is None:
+            return
+        for attribute in element.attributes.values():
             if is_port_name(attribute.name) and attribute.name not in model.ports and not _names(tree.element, attribute.name):
                 known, mend = ", ".join(model.ports) or "none", did_you_mean(attribute.name, model.ports)
                 what = f'tree "{tree.tree_id}" has no port "{attribute.name}", nor does anything in it read one'
@@ -177,9 +179,8 @@ class StaticCheck:
             what = f"<{element.tag}> without variable always takes its last child"
             self._report.warning(element.place, "missing-port", what, expected='variable="{key}"', found="nothing")
         seen: list[XmlAttribute] = []
-        for case in sorted((one for one in element.attributes.values() if one.name.startswith("case_")), key=lambda one: one.name):
-            if key_of(case.name, case.value) is not None:
-                continue
+        cases = [one for one in element.attributes.values() if one.name.startswith("case_") and key_of(one.name, one.value) is None]
+        for case in sorted(cases, key=lambda one: one.name):
             earlier = next((one for one in seen if same_value(one.value, case.value, {})), None)
             if earlier is not None:
                 what = f"{case.name} is never chosen: {earlier.name} takes the same value"
@@ -241,10 +242,7 @@ class StaticCheck:
 
 def _names(element: XmlElement, key: str) -> bool:
     """True if a value below `element` has the key as a word, in braces or in a script; or may pass it on unnamed."""
-    word, waiting = re.compile(rf"(?<!\w){re.escape(key)}(?!\w)"), list(element.children)
-    while waiting:
-        inner = waiting.pop()
-        waiting += inner.children
-        if "_autoremap" in inner.attributes or any(word.search(attribute.value) for attribute in inner.attributes.values()):
-            return True
-    return False
+    word, found = re.compile(rf"(?<!\w){re.escape(key)}(?!\w)"), list(element.children)
+    for inner in found:  # grows as it is walked
+        found += inner.children
+    return any("_autoremap" in inner.attributes or any(word.search(one.value) for one in inner.attributes.values()) for inner in found)
