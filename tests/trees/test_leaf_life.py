@@ -339,3 +339,17 @@ def test_a_tick_that_would_never_end_is_an_error() -> None:
     mission = mission_of('<Repeat num_cycles="-1"><AlwaysSuccess/></Repeat>')
     with pytest.raises(TickError, match="a tick does not end"):
         mission.tick_once()
+
+
+def test_an_input_without_value_fails_a_leaf_of_the_library_and_is_an_error_of_anybody_elses() -> None:
+    class Theirs(BehaviourWithPorts, tag="Theirs"):
+        INPUT_PORTS: ClassVar = {"text": Port(str, required=True)}
+        OUTPUT_PORTS: ClassVar = {}
+
+        def update(self) -> Status:
+            return Status.SUCCESS if self.get_input("text") else Status.FAILURE
+
+    say, theirs = (mission_of(f'<{node} name="n" text="{{word}}"/>', Theirs) for node in ("Say", "Theirs"))
+    assert say.tick_once() == "FAILURE" and say.root.feedback_message.startswith('no-input: port "text" of "n" has no value')
+    with pytest.raises(TickError, match=r'port "text" of "n" has no value: .* write it on every way'):
+        theirs.tick_once()
