@@ -196,7 +196,7 @@ def test_a_sparse_file_of_a_terabyte_is_refused_unread(capsys: pytest.CaptureFix
 def test_a_thousand_faults_are_enough(capsys: pytest.CaptureFixture[str]) -> None:
     write("m.xml", tree("<Sequence>" + "<Foo/>" * 5000 + "</Sequence>"))
     errors = refused(capsys, "m.xml")
-    assert (len(errors), errors[0]["code"]) == (1000, "too-many-faults")
+    assert (len(errors), errors[-1]["code"]) == (1000, "too-many-faults")
 
 
 def test_a_flood_of_warnings_hides_no_error(capsys: pytest.CaptureFixture[str]) -> None:

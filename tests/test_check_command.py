@@ -60,6 +60,12 @@ LEGS = [
     ("near enough counts as there", '<GoTo goal="7.3;5" tolerance_m="0.5"/>', []),
     ("a planned way round", '<NavigateTo goal="12;5"/>', []),
     ("a goal by its name", '<NavigateTo goal="gate"/>', []),
+    ("what is planned is judged where it is planned", '<ComputePathToPose goal="17;8.5" path="{p}"/>', ["2:26 error no-way"]),
+    ("who only plans stays where it is", '<PlanPath goal="12;8" path="{p}"/><GoTo goal="12;5"/>', ["2:47 warning leg-blocked"]),
+    ("from a place of its own it may find a way", '<PlanPath goal="17;8.5" start="17;9" path="{p}"/>', []),
+    ("a name that is no goal to plan to", '<ComputePathToPose goal="gtae" path="{p}"/>', ["2:26 error unknown-goal"]),
+    ("a name that is no goal, in an entry", '<SubTree ID="Go" place="gtae"/></Sequence></BehaviorTree>\n'
+     '<BehaviorTree ID="Go"><Sequence><ComputePathToPose goal="{place}" path="{p}"/>', ["3:58 error unknown-goal"]),
     ("a name that is no goal", '<NavigateTo goal="gtae"/>', ["2:19 error unknown-goal"]),
     ("home, which this world has not", '<NavigateTo goal="home"/>', ["2:19 error unknown-goal"]),
     ("one goal after the other", '<NavigateThroughPoses goals="6,5;gate;9,5"/>', ["2:30 error goal-blocked"]),
@@ -279,6 +285,21 @@ def test_a_leaf_whose_device_the_robot_does_not_have(
     assert [f"{fault['line']}:{fault['column']} {fault['severity']} {fault['code']}" for fault in found] == faults
 
 
+def test_a_map_without_a_start_says_nothing_of_the_first_way_and_start_gives_one(capsys: pytest.CaptureFixture[str]) -> None:
+    pixels = np.full((60, 120), 254, np.uint8)
+    pixels[[0, -1], :] = pixels[:, [0, -1]] = 0  # a room of 12 m by 6 m, whose corner is the origin
+    Path("room.pgm").write_bytes(b"P5 120 60 255\n" + pixels.tobytes())
+    Path("room.yaml").write_text("image: room.pgm\nresolution: 0.1\norigin: [0, 0, 0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.2\n")
+    body = '<NavigateTo goal="9;3"/>'
+    faults, answer = checked(capsys, body, "--world", "room.yaml")
+    assert (faults, answer["legs"][0]["start"], answer["legs"][0]["distance_m"]) == ([], None, None)
+    faults, answer = checked(capsys, body, "--world", "room.yaml", "--start", "3,3,0")
+    assert (faults, answer["legs"][0]["start"]) == ([], [3.0, 3.0]) and answer["legs"][0]["distance_m"] == pytest.approx(6.0, abs=0.3)
+    faults, _ = checked(capsys, body, "--world", "room.yaml", "--start", "0,0,0")
+    assert "0:0 error start-blocked" in faults
+    assert checked(capsys, '<NavigateTo goal="6;5"/>', "--start", "3;3")[0] == ["0:0 error bad-value"]
+
+
 def test_a_leg_begins_where_the_one_to_a_named_goal_ended(capsys: pytest.CaptureFixture[str]) -> None:
     body = '<NavigateTo goal="gate"/><NavigateTo goal="6;5"/><NavigateTo goal="gate"/>'
     _, answer = checked(capsys, body)
@@ -328,6 +349,13 @@ def test_numbers_that_are_none_are_told_as_what_they_are(capsys: pytest.CaptureF
     assert main(["run", "patrol.xml", "--port", "goals=4,3", "--set", "drive.max_speed_mps=nan"]) == 2
     told = capsys.readouterr().err
     assert "got str" not in told and "NaN" in told and "a number >= 0" in told
+
+
+def test_more_faults_than_can_be_told_are_not_counted_as_all(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("m.xml").write_text(MISSION.format(body="<Foo/>\n" * 1500), encoding="utf-8")
+    assert main(["check", "m.xml"]) == 2
+    told = capsys.readouterr()
+    assert told.err == "1 checked, more than 999 errors, 0 warnings\n" and "there are more errors than can be told" in told.out[-200:]
 
 
 def test_nodes_by_name(capsys: pytest.CaptureFixture[str]) -> None:

@@ -42,12 +42,14 @@ def test_every_command_has_help(name: str, capsys: pytest.CaptureFixture[str]) -
     assert capsys.readouterr().out.startswith(f"usage: pluto {name}")
 
 
-def test_a_new_mission_runs_as_it_is_and_with_another_place() -> None:
+def test_a_new_mission_runs_as_it_is_and_with_another_place(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "mission", "errand"]) == 0
     assert main(["check", "errand.xml"]) == 0
     assert main(["run", "errand.xml"]) == 0
     assert main(["run", "errand.xml", "--port", "place=4;1"]) == 0
     assert main(["new", "mission", "errand"]) == 2, "never over an existing file"
+    assert main(["check", "errand.xml", "--port", "place=door"]) == 2
+    assert 'input "place" is declared as point; "door" is none' in capsys.readouterr().out
 
 
 def test_a_patrol_of_two_rounds_counts_its_goals_and_keeps_its_inputs(capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,7 +16,7 @@ from typing import Any, ClassVar, Final
 from pluto_bt.behaviours.pose_text import POSE_PARTS, finite, header_of, member, metres, pose_of_json, pose_of_parts, read_json
 from pluto_bt.maps.world import World
 
-_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_NUMBER: Final = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 HOME: Final = "home"
 
 

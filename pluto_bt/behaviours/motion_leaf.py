@@ -39,7 +39,8 @@ class MotionLeaf(RobotLeaf):
 
     Attributes:
         DRIVES: two of these at the same time take the robot from one another; `pluto check` tells it of parallel branches.
-        WAY: how the leaf comes to its port `goal`: "straight", "planned" on the map, "found" on the way; "stays" if it stays where it is; "" else.
+        WAY: how the leaf comes to its port `goal`: "straight", "planned" on the map, "found" on the way; "stays" if it stays where it is,
+            "asked" if it only asks for the way (leaves that plan); "" else.
         PATIENCE_S: seconds for which it lets the chain wait, where they differ from `WAITING`.
     """
 

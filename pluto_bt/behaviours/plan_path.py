@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from typing import Final
+from typing import ClassVar, Final
 
 from py_trees.common import Status
 from py_trees.ports import NoDataAvailable
@@ -31,7 +31,9 @@ def goal_of(leaf: Leaf, port: str = "goal") -> Destination | None:
 
 
 class Planning(RobotLeaf):
-    """A leaf that waits for a pose, then answers at once."""
+    """A leaf that waits for a pose, then answers at once. `WAY`: `pluto check` judges the way that it asks for, as those of motion leaves."""
+
+    WAY: ClassVar = "asked"
 
     def initialise(self) -> None:
         """Time counts from the first tick."""

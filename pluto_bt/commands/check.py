@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING
 
 from pluto_bt.commands.fault_formats import FORMATS
 from pluto_bt.commands.files import find_shipped, shipped_names
+from pluto_bt.commands.option_values import Pose, read_start
 from pluto_bt.commands.options import Parser
-from pluto_bt.source import Faults, InputError, Place, did_you_mean
+from pluto_bt.source import Fault, Faults, InputError, Place, did_you_mean
+from pluto_bt.source.faults import TOO_MANY
 from pluto_bt.source.text import read_bytes
 
 if TYPE_CHECKING:
@@ -28,10 +30,11 @@ def main(argv: list[str]) -> int:
     """Check files; exit 0 without errors (warnings alone are 0), else 2."""
     args = _parser().parse_args(argv)
     faults = Faults()
-    world, robot = _check_options(args, faults)
+    start = read_start(args.start, faults)
+    world, robot = _check_options(args, start, faults)
     legs: list[LegTold] = []
     for name in args.files:
-        legs += _check(name, args, world, robot, faults)
+        legs += _check(name, args, world, robot, start, faults)
     _print(args, faults, legs)
     return 2 if faults.has_errors else 0
 
@@ -41,6 +44,7 @@ def _parser() -> Parser:
     parser.add_argument("files", nargs="+", metavar="FILE")
     parser.add_argument("--format", choices=tuple(FORMATS), default="text")
     parser.add_argument("--world", metavar="W", help="drive the legs of the missions in thought through this world")
+    parser.add_argument("--start", metavar="X,Y,DEG", help="with --world: where the robot starts (default: the world's, else not known)")
     parser.add_argument("--platform", metavar="P", help="the robot that is to run the missions (default: the world's)")
     parser.add_argument("--tree", metavar="ID", help="the tree to check, if not the main one")
     parser.add_argument("--port", metavar="NAME=VALUE", action="append", default=[], help="an input of the main tree; may be repeated")
@@ -49,18 +53,20 @@ def _parser() -> Parser:
     return parser
 
 
-def _check_options(args: argparse.Namespace, faults: Faults) -> tuple[World | None, RobotFile | None]:
+def _check_options(args: argparse.Namespace, start: Pose | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
     """The faults of what serves all the files: plugins, and the world and the robot to check against."""
     from pluto_bt.commands.inputs import check_world, read_robot
     from pluto_bt.commands.plugins import load_plugins
 
     load_plugins(args.plugin, faults)
     if args.world is not None:
-        return check_world(args.world, args.platform, faults)
+        return check_world(args.world, args.platform, faults, start, args.start)
     return None, None if args.platform is None else read_robot(args.platform, faults)
 
 
-def _check(name: str, args: argparse.Namespace, world: World | None, robot: RobotFile | None, faults: Faults) -> list[LegTold]:
+def _check(
+    name: str, args: argparse.Namespace, world: World | None, robot: RobotFile | None, start: Pose | None, faults: Faults
+) -> list[LegTold]:
     """The faults of one file, whatever kind it is of; the legs of a mission in a world."""
     path = find_shipped(name) if not os.path.lexists(name) else Path(name)
     if Path(name).suffix.lower() == ".toml" or (path is None and name in ROBOTS):
@@ -78,7 +84,7 @@ def _check(name: str, args: argparse.Namespace, world: World | None, robot: Robo
         if examined is not None and examined.plan is not None and (world is not None or robot is not None):
             from pluto_bt.commands.mission_in_world import check_on_robot
 
-            return check_on_robot(examined.plan, world, robot, faults)
+            return check_on_robot(examined.plan, world, robot, start, faults)
     return []
 
 
@@ -120,6 +126,11 @@ def _print(args: argparse.Namespace, faults: Faults, legs: list[LegTold]) -> Non
         from pluto_bt.commands.legs_in_world import sum_of
 
         print(sum_of(legs))
-    errors = sum(fault.severity == "error" for fault in found)
-    warnings = len(found) - errors
-    print(f"{len(args.files)} checked, {errors} error{'s' * (errors != 1)}, {warnings} warning{'s' * (warnings != 1)}", file=sys.stderr)
+    print(f"{len(args.files)} checked, {_count(found, 'error')}, {_count(found, 'warning')}", file=sys.stderr)
+
+
+def _count(found: list[Fault], severity: str) -> str:
+    """How many there are of a severity; "more than" where not all could be told."""
+    told = [fault for fault in found if fault.severity == severity and fault.code != TOO_MANY]
+    more = "more than " * any(fault.severity == severity and fault.code == TOO_MANY for fault in found)
+    return f"{more}{len(told)} {severity}{'s' * (len(told) != 1)}"

@@ -119,12 +119,15 @@ def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[ty
                   tuple(request.plugin), params)  # fmt: skip
 
 
-def check_world(name: str, platform: str | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
-    """Check a world alone: its file, its robot and that one's place, the topics and modules of its script. Returns what could be read."""
+def check_world(
+    name: str, platform: str | None, faults: Faults, start: Pose | None = None, asked: str | None = None
+) -> tuple[World | None, RobotFile | None]:
+    """Check a world alone: its file, its robot and that one's place (`start`, as `asked` with `--start`, before the world's own), the topics and
+    modules of its script. Returns what could be read."""
     world = _world(name, faults, None)
     robot = _robot(platform, world, (), faults, None)
     if world is not None:
-        check_together(world, robot, world.robot.pose, None, faults)
+        check_together(world, robot, start or world.robot.pose, asked, faults)
     return world, robot
 
 

@@ -20,8 +20,8 @@ MISSION = """\
   </BehaviorTree>
   <TreeNodesModel>
     <SubTree ID="{name}">
-      <input_port name="place" default="5;3.5">where to go, x;y in metres of the map</input_port>
-      <input_port name="home" default="2;3.5">where to come back to</input_port>
+      <input_port name="place" type="point" default="5;3.5">where to go, x;y in metres of the map</input_port>
+      <input_port name="home" type="point" default="2;3.5">where to come back to</input_port>
     </SubTree>
   </TreeNodesModel>
 </root>

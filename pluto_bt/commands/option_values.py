@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from pluto_bt.maps.numbers import MAX_METRES
+from pluto_bt.maps.numbers import MAX_METRES, NUMBER
 from pluto_bt.source import Faults, Place
 
 Pose = tuple[float, float, float]
@@ -76,8 +76,5 @@ def read_ports(settings: Sequence[str], faults: Faults) -> dict[str, str]:
 
 
 def _number(text: str) -> float | None:
-    try:
-        number = float(text)
-    except ValueError:
-        return None
+    number = float(text) if NUMBER.fullmatch(text.strip()) else math.nan
     return number if math.isfinite(number) else None

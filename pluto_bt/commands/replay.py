@@ -129,7 +129,8 @@ def contracts(box: Box, mission: Path | None) -> int:
     kept = check_box(box, found)
     for one in kept:
         told = one.as_json()
-        print(f"{told['verdict']:<10} {told['name']}: {told['always']}" + (f" (never judged: {told['problem']})" if told["problem"] else ""))
+        how = "cannot be" if told["judged"] or told["breaches"] else "never"
+        print(f"{told['verdict']:<10} {told['name']}: {told['always']}" + (f" ({how} judged: {told['problem']})" if told["problem"] else ""))
         for breach in one.breaches:
             end = "to the end" if breach.until_s is None else f"to {breach.until_s:.2f} s"
             print(f"           did not hold from {breach.since_s:.2f} s {end}, broken at {breach.broken_s:.2f} s")

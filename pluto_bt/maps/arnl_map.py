@@ -149,7 +149,7 @@ class _ArnlReading:
             self._error(at, "bad-number", f"{key} must be a number greater than 0", f"{key}: millimetres", rest.strip() or "nothing")
 
     def _claim(self, section: str, key: str, count: str, at: int) -> None:
-        if re.fullmatch(r"\d{1,9}", count):
+        if re.fullmatch(r"[0-9]{1,9}", count):
             self._claimed[section].append((int(count), at))
         else:
             self._error(at, "bad-number", f"{key} must be a whole number", f"{key}: how many rows {section} has", count or "nothing")

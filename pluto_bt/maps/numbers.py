@@ -5,4 +5,4 @@ from __future__ import annotations
 import re
 
 MAX_METRES = 1e6  # of any coordinate; beyond, centimetres are lost in the rounding
-NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d{1,3})?")
+NUMBER = re.compile(r"[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[eE][-+]?[0-9]{1,3})?")

@@ -36,6 +36,7 @@ class Place:
     text: str = ""
 
 
+TOO_MANY: Final = "too-many-faults"  # the code of the fault that stands for all further ones
 NOWHERE: Final = Place()  # of what no file says
 
 
@@ -104,7 +105,7 @@ class Faults:
             return
         self._counts[severity] += 1
         if self._counts[severity] == limit:
-            place, code, message = Place(place.file), "too-many-faults", f"there are more {severity}s than can be told"
+            place, code, message = Place(place.file), TOO_MANY, f"there are more {severity}s than can be told"
             expected, found, mend = f"at most {limit}", "more", "mend the first ones"
         message, expected, found, mend = map(_quotable, (message, expected, found, mend))
         self._faults.append(Fault(place.file, place.line, place.column, severity, code, message, expected, found, mend, place.text))
@@ -132,9 +133,9 @@ class Faults:
         return self._counts["error"] > 0
 
     def in_order(self) -> tuple[Fault, ...]:
-        """All faults, by file (in the order first seen), line and column."""
+        """All faults, by file (in the order first seen), line and column; that there are more comes last."""
         files = {file: i for i, file in enumerate(dict.fromkeys(fault.file for fault in self._faults))}
-        return tuple(sorted(self._faults, key=lambda fault: (files[fault.file], fault.line, fault.column)))
+        return tuple(sorted(self._faults, key=lambda fault: (fault.code == TOO_MANY, files[fault.file], fault.line, fault.column)))
 
     def raise_errors(self, kind: type[InputError] = InputError) -> None:
         """Raise `kind` with all faults if any of them is an error."""

@@ -6,6 +6,7 @@ import contextlib
 from collections.abc import Callable
 from typing import Any, Final
 
+from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import NodeState
 from pluto_bt.trees.board_view import BoardView
@@ -150,12 +151,17 @@ class Mission:
         return None if node is None else next(tracked for tracked in self._tracked if tracked.node is node)
 
     def deciding_reason(self) -> str:
-        """The `reason` that the deciding leaf gave (its output port), else its feedback, else its name; "" if the root did not fail."""
+        """The `reason` that the deciding leaf gave, else its feedback, else its name; "" if the root did not fail.
+
+        A control or decorator that decided without a leaf has no reason to give: `failed`.
+        """
         decider = self.deciding_node()
         if decider is None:
             return ""
         outputs: dict[str, Any] = getattr(decider.node, "last_outputs", {})
-        return str(outputs.get("reason") or decider.node.feedback_message or decider.plan.name)
+        own = decider.node.reason if isinstance(decider.node, Leaf) else ""
+        is_leaf = decider.plan.node_type is not None and not decider.plan.children
+        return str(outputs.get("reason") or own or decider.node.feedback_message or (decider.plan.name if is_leaf else "failed"))
 
     def deciding_text(self) -> str:
         """The same in words: which node it was and what it said; "" if the root did not fail."""

@@ -20,8 +20,8 @@ INT32: Final = (-(2**31), 2**31 - 1)
 INT64_RANGE: Final = (-(2**63), 2**63 - 1)
 EXACT_INT: Final = 2**53  # beyond it a double no longer holds every integer
 
-_INTEGER = re.compile(r"-?\d+")
-REAL = re.compile(r"-?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)")
+_INTEGER = re.compile(r"-?\d+", re.ASCII)  # the digits of other scripts are no numbers in any file
+REAL = re.compile(r"-?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)", re.ASCII)
 
 
 REALS: Final = ("double", "float")  # types of a model that take digits for a real number

@@ -70,6 +70,15 @@ def test_it_is_judged_only_when_it_says_and_only_what_is_known(scenario: Play, t
     assert (second["verdict"], second["name"]) == ("not judged", "contract 2") and "late" in second["problem"]
 
 
+def test_what_cannot_be_judged_is_broken(scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "a.mcap"
+    run = scenario("yard.xml", mission=mission(tmp_path, "<Contract name='says' always=\"far == 'x'\"/>"), platform="pioneer", record=file)
+    assert (run.result, run.reason, run.contracts[0]["verdict"]) == ("STOPPED", "contract", "broken") and run.sim_time_s < 2.0
+    assert run.text == "contract \"says\" cannot be judged: script failed: text 'x' is no number" and run.contracts[0]["problem"] in run.text
+    assert main(["replay", str(file), "--contracts"]) == 1
+    assert "(cannot be judged: script failed: text 'x' is no number)" in capsys.readouterr().out
+
+
 def test_over_a_recorded_run_with_its_own_contracts_or_with_others(scenario: Play, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "a.mcap"
     scenario("yard.xml", mission=mission(tmp_path, NEAR.format('then="tell"')), platform="pioneer", record=file)

@@ -55,6 +55,16 @@ ENTRIES = [
     ("in a loop the first round comes to it first",
      '<Repeat num_cycles="3"><Sequence><ScriptCondition code="n"/><Script code="n := 1"/></Sequence></Repeat>',
      "", ["2:57 error unset-key"]),
+    ("what can fail before a parallel does not change the order inside it",
+     '<Sequence><IsStuck/><Parallel><Sleep msec="{t}"/><Script code="t := 2"/></Parallel></Sequence>', "", ["2:44 error unset-key"]),
+    ("nor does another fault",
+     '<Sequence><Say text="{a}"/><ReactiveSequence><Sleep msec="{t}"/><Script code="t := 2"/></ReactiveSequence></Sequence>', "",
+     ["2:22 error unset-key", "2:59 error unset-key"]),
+    ("a branch that a parallel may skip",
+     '<Parallel><IsStuck/><Sleep msec="{t}" _skipIf="@Localization_Pose_x &gt; 1"/><Script code="t := 2"/></Parallel>', "", []),
+    ("a topic is only read", '<Script code="@Localization_Pose_x := 3"/>', "", ["2:15 error read-only"]),
+    ("a topic is only read, by any name", '<Script code="a := 1; Localization_Pose_x := 3"/>', "", ["2:23 error read-only"]),
+    ("a topic is no place for an output", '<GoTo goal="1;2" reason="{@Localization_Pose_x}"/>', "", ["2:26 error read-only"]),
     ("a reactive condition may be written below it later",
      '<ReactiveSequence><Fallback><IsStuck/><ScriptCondition code="n"/></Fallback><Script code="n := 1"/>'
      "</ReactiveSequence>", "", []),
@@ -236,6 +246,72 @@ def test_a_read_that_is_called_too_early_never_succeeds(body: str) -> None:
             assert not done
 
 
+X = '<Script code="x := 1"/>'
+CERTAIN = [
+    # what it shows                     body                                                                            faults
+    ("a text for a number", f"<Sequence>{X}<Script code=\"x := 't'\"/></Sequence>", ["2:48 error script-fails"]),
+    ("a number in digits", f"<Sequence>{X}<Script code=\"x := '7'\"/></Sequence>", []),
+    ("a number for a text", "<Script code=\"x := 't'; x := 3\"/>", ["2:25 error script-fails"]),
+    ("half of a whole number", '<Script code="x := 5; x /= 2"/>', ["2:23 error script-fails"]),
+    ("half of an even one", '<Script code="x := 6; x /= 2"/>', []),
+    ("bits of a fraction", '<Script code="a := 1.5 &amp; 2"/>', ["2:15 error script-fails"]),
+    ("a sum with a text", "<Script code=\"x := 't'; z := x + 1\"/>", ["2:30 error script-fails"]),
+    ("a text is no answer", "<ScriptCondition code=\"'t'\"/>", ["2:24 error script-fails"]),
+    ("nor is it of a condition", f'<Sequence>{X}<Sleep msec="1" _skipIf="x + 1"/></Sequence>', []),
+    ("two is neither true nor false", '<Sequence><Script code="x := 2"/><Sleep msec="1" _skipIf="x"/></Sequence>', ["2:59 error script-fails"]),
+    ("a number is no goal", f'<Sequence>{X}<GoTo goal="{{x}}"/></Sequence>', ["2:46 error bad-literal"]),
+    ("a time below 0", '<Sequence><Script code="n := -1"/><Sleep msec="{n}"/></Sequence>', ["2:48 error bad-literal"]),
+    ("below its limit", '<Sequence><Script code="n := 0.001"/><GoTo goal="4;3" tolerance_m="{n}"/></Sequence>', ["2:68 error bad-literal"]),
+    ("through a SubTree", f'<Sequence>{X}<SubTree ID="B" goal="{{x}}"/></Sequence>', ["4:34 error bad-literal"]),
+    ("a literal of a SubTree", '<SubTree ID="B" goal="door"/>', ["4:34 error bad-literal"]),
+    ("a branch may have changed it",
+     f"<Sequence>{X}<Fallback><IsStuck/><Script code=\"x := '7;7'\"/></Fallback><GoTo goal=\"{{x}}\"/></Sequence>", []),
+    ("a round before may have changed it",
+     f'<Sequence>{X}<Repeat num_cycles="2"><Sequence><Fallback><IsStuck/><Script code="x &amp; 1.5"/></Fallback><GoTo goal="1;2"/>'
+     '<Script code="x := 2.0"/></Sequence></Repeat></Sequence>', []),
+    ("a leaf has written it", f'<Sequence>{X}<GoTo goal="1;2" reason="{{y}}"/><Script code="y + 1"/></Sequence>', []),
+    ("a condition keeps it from being reached", f"<Fallback><Sequence>{X}<ScriptCondition code=\"x == 2\"/><Script code=\"x := 't'\"/></Sequence>"
+     "<AlwaysSuccess/></Fallback>", []),
+    ("a node that is always passed over", f"<Sequence>{X}<Script code=\"x := 't'\" _skipIf=\"x == 1\"/></Sequence>", []),
+    ("an entry that was taken away", f"<Sequence>{X}<UnsetBlackboard key=\"x\"/><Script code=\"x := 't'\"/></Sequence>", []),
+    ("a topic is what it is", '<Script code="a := @Localization_Pose_x &amp; 1"/>', []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("body", "faults"), [row[1:] for row in CERTAIN], ids=[row[0] for row in CERTAIN])
+def test_values_that_are_certain_must_fit(body: str, faults: list[str]) -> None:
+    assert [one for one in told(body, tree("B", '<GoTo goal="{goal}"/>')) if "unused-tree" not in one] == faults
+
+
+def test_an_input_is_looked_through_at_the_port_it_ends_in() -> None:
+    (fault,) = check_mission(mission('<SubTree ID="B" goal="{place}"/>', tree("B", '<GoTo goal="{goal}"/>')), ports={"place": "door"})
+    assert (fault.severity, fault.code, fault.line) == ("error", "bad-literal", 4)
+    assert fault.message.startswith("entry \"goal\" is text 'door' here")
+    assert fault.mend == "it is an input: give another value with --port place=VALUE"
+
+
+SUMS = st.sampled_from([OK, "<AlwaysFailure/>", '<ScriptCondition code="a"/>', '<Script code="x := 1"/>', "<Script code=\"x := 't'\"/>",
+                        '<Script code="x := 2.5"/>', '<Script code="y := x; y /= 2"/>', '<Script code="x &amp; 1"/>', '<Script code="z := x + 1"/>',
+                        '<Sleep msec="{z}"/>', "<Script code=\"x := '3'\" _skipIf=\"x == 1\" _onSuccess=\"y := 5\"/>",
+                        '<ScriptCondition code="y == 1"/>', '<SubTree ID="B" v="{x}" w="{y}"/>', '<UnsetBlackboard key="x"/>'])  # fmt: skip
+
+
+@given(st.recursive(SUMS, branches, max_leaves=14))
+@settings(max_examples=60, deadline=None)
+def test_what_is_said_to_fail_never_succeeds(body: str) -> None:
+    text = mission(body.replace("_successIf", "_onSuccess").replace('"b"', '"y := 2"'), tree("B", '<Script code="w := v"/>'))
+    surely = {(fault.line, fault.column) for fault in check_mission(text, ports={"a": "1"}) if fault.code in ("script-fails", "bad-literal")}
+    for a in (0, 1):
+        loaded = load_mission(text, blackboard={"a": a})
+        failing = {one.path for one in loaded.nodes() if any(holds(attribute, surely) for attribute in one.plan.element.attributes.values())}
+        for _ in range(4):
+            try:
+                loaded.tick_exactly_once()
+            except TickError:
+                break
+            assert not [path for path, status in loaded.statuses().items() if path in failing and status in ("SUCCESS", "FAILURE")]
+
+
 DRIVES = [
     ('<Parallel><GoTo goal="1;2"/><DriveVelocity/></Parallel>', ["2:29 error parallel-drive"]),
     ('<Parallel><Say text="x"/><DriveVelocity/></Parallel>', []),
@@ -340,6 +416,41 @@ UNUSED = [
 @pytest.mark.parametrize(("more", "faults"), [row[1:] for row in UNUSED], ids=[row[0] for row in UNUSED])
 def test_trees_that_the_main_tree_does_not_use(more: str, faults: list[str]) -> None:
     assert told(OK, more) == [f"4:{fault}" for fault in faults]
+
+
+MODEL = '<TreeNodesModel><SubTree ID="S"><input_port name="place" default="1;2"/></SubTree></TreeNodesModel>'
+USES = tree("S", '<Sequence><GoTo goal="{place}"/><Say text="{word}"/><Script code="n := round"/></Sequence>')
+
+
+@pytest.mark.parametrize(("ports", "faults", "mend"), [
+    ('plce="3;4" word="a" round="1"', ["2:17 warning unknown-port"], 'did you mean "place"?'),
+    ('word="a" round="1" other="5"', ["2:36 warning unknown-port"], ""),
+    ('place="3;4" word="a" round="1"', [], ""),
+])  # fmt: skip
+def test_a_port_of_a_subtree_that_neither_its_model_nor_anything_in_it_knows(ports: str, faults: list[str], mend: str) -> None:
+    body = f'<SubTree ID="S" {ports}/>'
+    assert told(body, USES + MODEL) == faults
+    assert [fault.mend for fault in check_mission(mission(body, USES + MODEL))] == [mend] * len(faults)
+    assert not [one for one in told(body, USES) if "unknown-port" in one], "without a model any port may be meant"
+
+
+@pytest.mark.parametrize(("cases", "columns"), [
+    ('case_1="1" case_2="1"', [64]), ('case_1="1" case_2="2"', []), ('case_1="a" case_2="{b}"', []), ('case_2="x" case_1="x"', [53]),
+    ('case_1="1" case_2="1.0"', [64]),
+])  # fmt: skip
+def test_a_case_that_an_earlier_one_always_takes(cases: str, columns: list[int]) -> None:
+    body = f"<Sequence><Script code=\"b := 'v'\"/><Switch2 {cases} variable=\"{{b}}\">{OK * 3}</Switch2></Sequence>"
+    assert [one for one in told(body) if "unset-key" not in one] == [f"2:{column} warning unreachable" for column in columns]
+
+
+def test_where_the_main_tree_is_not_said_each_that_may_be_it_is_looked_at() -> None:
+    trees = tree("a.b", OK), tree("M", '<Sequence><Say text="{zz}"/><SubTree ID="M"/></Sequence>'), tree("N", '<SubTree ID="C"/>')
+    text = '<root BTCPP_format="4">' + "\n".join([*trees, tree("C", '<GoTo goal="{=}" tolerance_m="{=}"/><Foo/>')]) + "</root>"
+    faults = check_mission(text, topics=TopicGlobals())
+    assert [f"{one.line} {one.severity} {one.code}" for one in faults] == [
+        "1 error no-main-tree", "1 error bad-id", "2 warning unset-key", "2 error recursion", "4 error child-count",
+        "4 warning unset-key", "4 warning unset-key", "4 error unknown-node"]  # fmt: skip
+    assert faults[0].mend == 'add main_tree_to_execute="M" to <root>, or give --tree'
 
 
 def test_all_faults_are_told_though_an_included_file_is_missing() -> None:

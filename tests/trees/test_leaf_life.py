@@ -258,12 +258,22 @@ def test_node_states_tell_since_when() -> None:
         ("<Sequence><Inverter><AlwaysSuccess name='too good'/></Inverter></Sequence>", "too good"),
         ("<Sequence><AlwaysSuccess name='x' _failureIf='true'/></Sequence>", "x"),
         ("<AlwaysSuccess/>", ""),
+        ("<RecoveryNode name='r'><AlwaysFailure name='work'/><AlwaysFailure name='cure'/></RecoveryNode>", "work"),
+        ("<RecoveryNode><PipelineSequence><AlwaysFailure name='deep'/></PipelineSequence>"
+         "<RoundRobin name='cures'><AlwaysSuccess/></RoundRobin></RecoveryNode>", "deep"),
+        ("<RoundRobin name='past its end'><AlwaysSuccess/></RoundRobin>", "failed"),
     ],
-)
+)  # fmt: skip
 def test_the_node_that_decided_a_failure_is_named(body: str, reason: str) -> None:
     mission = mission_of(body)
     mission.tick_once()
     assert mission.deciding_reason() == reason
+
+
+def test_a_leaf_without_a_port_for_its_reason_gives_it_all_the_same() -> None:
+    mission = mission_of('<RecoveryNode><ComputePathToPose goal="1;2" path="{p}"/><AlwaysFailure name="no cure"/></RecoveryNode>')
+    mission.tick_once()
+    assert mission.deciding_reason() == "not-connected"
 
 
 def test_a_timeout_is_the_reason_of_its_failure() -> None:

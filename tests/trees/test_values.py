@@ -64,6 +64,7 @@ def test_text(data_type: Any, text: str, value: Any) -> None:
 
 BAD_TEXTS = [
     (int, "+5"), (int, " 5"), (int, ""), (int, "x"), (int, "99999999999"), (float, "nan"), (float, "1e999"), (float, ""), (bool, "yes"),
+    (int, "１０"), (float, "４.５"), (tuple[float, float], "４;３.５"),
     (bool, " true"),
     (list[int], "1;;2"), (list[int], "1; 2"), (list[int], "json:" + "[" * 100_000), (tuple[float, float], "1"), (tuple[float, float], "1;2;3"),
     (tuple[float, float], "1;2m"), (list[tuple[float, float]], "1;2"), (Colour, "BLUE"), (Literal["left", "right"], "up"), (Angle, "north-west"),

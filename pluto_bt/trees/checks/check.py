@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Fault
+from pluto_bt.trees.checks.constants import Constants
 from pluto_bt.trees.checks.driving import check_driving
 from pluto_bt.trees.checks.flow import Flow
 from pluto_bt.trees.checks.outcomes import Ends, outcome
@@ -17,9 +18,10 @@ from pluto_bt.trees.checks.robot_words import check_words
 from pluto_bt.trees.checks.unused import check_unused
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.expand import Plan
-from pluto_bt.trees.loader.load import Reading, build, no_collecting, read_mission
+from pluto_bt.trees.loader.files import TreeSource
+from pluto_bt.trees.loader.load import Reading, build, no_collecting, read_mission, unfold
 from pluto_bt.trees.mission import Mission
-from pluto_bt.trees.scopes import Topics
+from pluto_bt.trees.scopes import Board, Topics
 
 
 @dataclass(frozen=True)
@@ -60,8 +62,11 @@ def examine_mission(
         reading = read_mission(text_or_path, nodes, None, tree=tree, ports=ports, topics=topics, file=file, plugins=plugins, models=models)
         if whole and reading.plan is not None and reading.main is not None and not reading.report.faults.is_full:
             _check_whole(reading, reading.plan)
+        for main in reading.candidates if whole else ():
+            _check_candidate(reading, main)
         check_unused(reading.unused, reading.files, reading.types, reading.report)
-        return Examined(reading.report.faults.in_order(), reading.plan)
+        found = dict.fromkeys(reading.report.faults.in_order())  # what two candidates use is told once
+        return Examined(tuple(found), reading.plan)
 
 
 def load_checked(
@@ -78,6 +83,15 @@ def load_checked(
         return build(reading, clock)
 
 
+def _check_candidate(reading: Reading, main: TreeSource) -> None:
+    """What is wrong with a tree that may be meant as the main one, where that is not said."""
+    if not reading.report.faults.is_full:
+        one = replace(reading, board=Board(reading.board.topics), report=reading.report.doubtful)
+        unfold(one, main, None)
+        if one.plan is not None:
+            _check_whole(one, one.plan)
+
+
 def _check_whole(reading: Reading, root: Plan) -> None:
     nodes, report = root.walk(), reading.report
     ends: dict[int, Ends] = {}
@@ -91,5 +105,7 @@ def _check_whole(reading: Reading, root: Plan) -> None:
     inputs = {name: port for name, port in model.ports.items() if port.direction != "out"} if model is not None else {}
     flow = Flow(reading.board, inputs, ends, report)
     flow.run(nodes)
+    given = {*inputs, *flow.loose}
+    Constants(reading.board, flow.uses, given, report, is_closed=flow.is_closed).visit(root)
     looks = [element.attributes[name] for element in reading.files.contracts for name in ("when", "always") if element.get(name)]
     flow.run_beside(looks)

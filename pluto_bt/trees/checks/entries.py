@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterable, Iterator
 from typing import Final, NamedTuple
 
 from pluto_bt.source import Place
@@ -11,7 +11,7 @@ from pluto_bt.trees.engine.conditions import POST_CONDITIONS, PRE_CONDITIONS
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel
-from pluto_bt.trees.scopes import Scope
+from pluto_bt.trees.scopes import EMPTY, Scope
 from pluto_bt.trees.script import ScriptSyntaxError
 from pluto_bt.trees.script.names import How, names_used
 from pluto_bt.trees.values import SCRIPT
@@ -53,6 +53,31 @@ def home_of(scope: Scope, key: str) -> tuple[Scope, str]:
     if key in scope.remap:
         return home_of(scope.parent, scope.remap[key])
     return home_of(scope.parent, key) if scope.autoremap and not key.startswith("_") else (scope, key)
+
+
+def home_key(plan: Plan, key: str) -> Home:
+    """What `key` means at a node, as a key of a table."""
+    owner, name = home_of(plan.scope, key)
+    return id(owner), name
+
+
+def written_homes(nodes: Iterable[Plan]) -> set[Home]:
+    """The entries that some node writes while the mission runs."""
+    return {home_key(one, use.key) for one in nodes for use in (*uses_before(one), *uses_after(one)) if use.how != "read"}
+
+
+def known_text(plan: Plan, port: str, written: Container[Home]) -> str | None:
+    """The text that a port has whenever it is read: a literal, or an entry that has a value before the first tick and that nothing writes."""
+    attribute = plan.element.attributes.get(port)
+    if attribute is None:
+        return None
+    key = key_of(port, attribute.value)
+    if key is None:
+        return attribute.value
+    entry = plan.scope.find(key)
+    if entry is None or entry.value is EMPTY or home_key(plan, key) in written:
+        return None
+    return str(entry.value)
 
 
 def uses_before(plan: Plan) -> list[Use]:

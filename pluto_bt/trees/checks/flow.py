@@ -26,7 +26,13 @@ ONCE: Final = frozenset((
 
 
 class Flow:
-    """One walk through a mission."""
+    """One walk through a mission.
+
+    Attributes:
+        is_closed: no leaf but ours, which write what their ports tell and nothing else.
+        loose: keys that nodes name of which nothing is known.
+        uses: by id of a plan, before its children are ticked, and after.
+    """
 
     def __init__(self, board: Board, inputs: Mapping[str, object], ends: Mapping[int, Ends], report: Report) -> None:
         """`inputs` are root entries that the caller gives; `ends` says by id of a plan how it can end."""
@@ -35,17 +41,17 @@ class Flow:
         self._written: set[Home] = set()
         self._in_rounds: frozenset[Home] = frozenset()  # what the nodes that are ticked again and again may write
         self._writers: dict[Home, Place] = {}
-        self._uses: dict[int, tuple[list[Use], list[Use]]] = {}  # by id of a plan: before its children are ticked, and after
+        self.uses: dict[int, tuple[list[Use], list[Use]]] = {}
         self._told = {(fault.file, fault.line, fault.column) for fault in report.faults.in_order() if fault.severity == "error"}
-        self._is_closed = True  # no leaf but ours, which write what their ports tell and nothing else
-        self._loose: set[str] = set()  # keys that nodes name of which nothing is known
+        self.is_closed = True
+        self.loose: set[str] = set()
 
     def run(self, nodes: list[Plan]) -> None:
         """Check; `nodes` is the whole mission in the order of `Plan.walk`."""
-        self._is_closed = all(plan.node_type is None or plan.node_type.is_ours for plan in nodes)
+        self.is_closed = all(plan.node_type is None or plan.node_type.is_ours for plan in nodes)
         for plan in nodes:
-            self._loose.update(_unknown_keys(plan))
-            self._uses[id(plan)] = before, after = uses_before(plan), uses_after(plan)
+            self.loose.update(_unknown_keys(plan))
+            self.uses[id(plan)] = before, after = uses_before(plan), uses_after(plan)
             for use in (*before, *after):
                 if use.how == "write":
                     self._writers.setdefault(self._home(plan.scope, use.key), use.place)
@@ -64,12 +70,13 @@ class Flow:
 
     def _visit(self, plan: Plan, certain: bool) -> None:
         certain = certain and not any(name in plan.element.attributes for name in GUARDS)
-        before, after = self._uses[id(plan)]
+        before, after = self.uses[id(plan)]
         self._take(plan, before, certain)
         outer = self._in_rounds
         if plan.children and not outer and plan.type_name not in ONCE:
-            uses = [(one.scope, use) for one in plan.walk() for some in self._uses[id(one)] for use in some]
+            uses = [(one.scope, use) for one in plan.walk() for some in self.uses[id(one)] for use in some]
             self._in_rounds = frozenset(self._home(scope, use.key) for scope, use in uses if use.how == "write")
+            certain = True  # whether a tick comes here or not: the first one that does finds no earlier round
         for child in plan.children:
             self._visit(child, certain)
             certain = certain and self._ends[id(child)] == S
@@ -85,6 +92,16 @@ class Flow:
                 self._tell(plan.scope, use, home)
             if use.how != "read":
                 self._written.add(home)
+                self._check_may_write(plan.scope, use)
+
+    def _check_may_write(self, scope: Scope, use: Use) -> None:
+        owner, name = home_of(scope, use.key)
+        place = use.place
+        if owner is not self._board.root or name not in self._board.topic_names or (place.file, place.line, place.column) in self._told:
+            return
+        self._told.add((place.file, place.line, place.column))
+        what, mend = f'"{use.key}" is a topic of the robot, which a mission only reads', "write an entry of your own"
+        self._report.late(place, "read-only", what, expected="an entry", found=f"the topic {name}", mend=mend)
 
     def _home(self, scope: Scope, key: str) -> Home:
         owner, name = home_of(scope, key)
@@ -94,7 +111,7 @@ class Flow:
         """True for entries that have a value before the first tick, topics, and what cannot be known here."""
         owner, name = home_of(scope, key)
         entry = owner.find(name)
-        if (entry is not None and entry.value is not EMPTY) or name in self._loose or name in self._board.topic_names:
+        if (entry is not None and entry.value is not EMPTY) or name in self.loose or name in self._board.topic_names:
             return True
         return owner is self._board.root and (name in self._inputs or (key.startswith("@") and self._board.topics is None))
 
@@ -113,7 +130,7 @@ class Flow:
             code, what = "unknown-topic", f'there is no topic and no entry "{use.key}"'
         elif use.how == "change":
             what = f'entry "{use.key}" does not exist, so nothing can be assigned to it'
-        is_sure = self._is_closed or (code == "unknown-topic" and in_contract)  # a leaf of a user's may write entries, but no topics
+        is_sure = self.is_closed or (code == "unknown-topic" and in_contract)  # a leaf of a user's may write entries, but no topics
         report = self._report.late if use.fails and is_sure else self._report.warning
         report(place, code, what, expected="an entry that has a value", found=found, mend=self._mend(scope, use, later is not None))
 

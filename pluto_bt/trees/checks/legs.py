@@ -13,15 +13,15 @@ from typing import Any, Final
 
 from pluto_bt.behaviours.destinations import Destination, Destinations
 from pluto_bt.source import Place
-from pluto_bt.trees.checks.entries import Home, home_of, uses_after, uses_before
+from pluto_bt.trees.checks.entries import Home, home_key, known_text, written_homes
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel
-from pluto_bt.trees.scopes import EMPTY
 from pluto_bt.trees.values import DOUBLE, PortProblem
 
 Point = tuple[float, float]
 STAYS: Final = "stays"  # a leaf that leaves the robot where it is
+ASKED: Final = "asked"  # the same, but it asks for the way to its goal
 MOST_LEGS: Final = 500
 ALTERNATIVES: Final = ("IfThenElse", "WhileDoElse", "Switch2", "Switch3", "Switch4", "Switch5", "Switch6")
 
@@ -55,7 +55,7 @@ class Course:
         self._places = places
         self.legs: list[Leg] = []
         self._bound: dict[Home, str] = {}  # elements of the loops around the node that is looked at
-        self._written = {home_key(one, use.key) for one in nodes for use in (*uses_before(one), *uses_after(one)) if use.how != "read"}
+        self._written = written_homes(nodes)
         self._seen: set[tuple[int, Point | None, Point | str]] = set()
         self._visit(nodes[0], start)
 
@@ -104,6 +104,14 @@ class Course:
             return None if getattr(make, "DRIVES", False) else at
         if way == STAYS:
             return at
+        if way == ASKED:
+            self._way_to(plan, "planned", None if "start" in plan.element.attributes else at)
+            return at
+        return self._way_to(plan, way, at)
+
+    def _way_to(self, plan: Plan, way: str, at: Point | None) -> Point | None:
+        """Note the legs to the goals of a leaf; the last goal."""
+        assert plan.node_type is not None  # the caller looked
         port = next((plan.node_type.ports[name] for name in ("goal", "goals") if name in plan.node_type.ports), None)
         goals = self._goals(plan, port) if port is not None else []
         for goal in goals:
@@ -144,18 +152,10 @@ class Course:
     def _text(self, plan: Plan, port: str) -> str | None:
         """The text that a port has whenever it is read; None if that is not known."""
         attribute = plan.element.attributes.get(port)
-        if attribute is None:
-            return None
-        key = key_of(port, attribute.value)
-        if key is None:
-            return attribute.value
-        home = home_key(plan, key)
-        if home in self._bound:
+        key = key_of(port, attribute.value) if attribute is not None else None
+        if key is not None and (home := home_key(plan, key)) in self._bound:
             return self._bound[home]
-        entry = plan.scope.find(key)
-        if entry is None or entry.value is EMPTY or (home in self._written and port != "queue"):
-            return None
-        return str(entry.value)
+        return known_text(plan, port, () if port == "queue" else self._written)
 
 
 def _place_of(value: object) -> Point | str | None:
@@ -164,9 +164,3 @@ def _place_of(value: object) -> Point | str | None:
         return value.name or (value.x_m, value.y_m)
     is_point = isinstance(value, tuple) and len(value) >= 2 and all(isinstance(part, float) and math.isfinite(part) for part in value)
     return (value[0], value[1]) if is_point and isinstance(value, tuple) else None
-
-
-def home_key(plan: Plan, key: str) -> Home:
-    """What `key` means at a node, as a key of a table."""
-    owner, name = home_of(plan.scope, key)
-    return id(owner), name

@@ -8,9 +8,8 @@ from pluto_bt.behaviours.destinations import Destination, Destinations
 from pluto_bt.maps.script import FaultAction
 from pluto_bt.maps.world import World
 from pluto_bt.source import Fault, Faults, Place, did_you_mean
-from pluto_bt.source.xml_reader import XmlAttribute
+from pluto_bt.trees.checks.entries import known_text, written_homes
 from pluto_bt.trees.loader.expand import Plan
-from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel
 from pluto_bt.trees.python_types import kind_of_type
 
@@ -22,14 +21,15 @@ def check_world_words(root: Plan, world: World, map_: World, *, may_fail: bool =
     """
     faults, nodes = Faults(), root.walk()
     words = Faults()
-    told: set[int] = set()
+    written, told = written_homes(nodes), set[tuple[Place, str]]()
     for plan in nodes:
         ports = plan.node_type.ports.values() if plan.node_type is not None else ()
         for port in ports:
             attribute = plan.element.attributes.get(port.name)
-            if attribute is not None and key_of(port.name, attribute.value) is None and id(attribute) not in told:
-                told.add(id(attribute))
-                _check_literal(attribute, port, map_, words)
+            text = known_text(plan, port.name, written) if attribute is not None and port.direction != "out" else None
+            if attribute is not None and text is not None and (attribute.value_place, text) not in told:
+                told.add((attribute.value_place, text))
+                _check_word(text, attribute.value_place, port, map_, words)
     faults.extend(replace(fault, severity="warning") if may_fail else fault for fault in words.in_order())
     _check_leaves(nodes, world, faults)
     return faults.in_order()
@@ -48,21 +48,21 @@ def tell_unknown_goal(place: Place, name: str, map_: World, faults: Faults) -> N
     faults.error(place, "unknown-goal", f'the map has no goal "{name}"', expected=known, found=name, mend=did_you_mean(name, goals))
 
 
-def _check_literal(attribute: XmlAttribute, port: PortModel, map_: World, faults: Faults) -> None:
+def _check_word(text: str, place: Place, port: PortModel, map_: World, faults: Faults) -> None:
+    """A port whose value names a place of the map."""
     if port.names == "area":
         areas = [area.id for area in map_.areas if area.id]
-        if attribute.value not in areas:
-            what, known = f'the map has no area "{attribute.value}"', "one of: " + (", ".join(areas) or "none")
-            mend = did_you_mean(attribute.value, areas)
-            faults.error(attribute.value_place, "unknown-area", what, expected=known, found=attribute.value, mend=mend)
+        if text not in areas:
+            what, known = f'the map has no area "{text}"', "one of: " + (", ".join(areas) or "none")
+            faults.error(place, "unknown-area", what, expected=known, found=text, mend=did_you_mean(text, areas))
     elif port.kind in (kind_of_type(Destination), kind_of_type(Destinations)):
         try:
-            value = port.kind.parse(attribute.value)
+            value = port.kind.parse(text)
         except ValueError:
             return  # told by the static check
         for one in value if isinstance(value, Destinations) else [value]:
             if one.name and one.name not in goals_of(map_):
-                tell_unknown_goal(attribute.value_place, one.name, map_, faults)
+                tell_unknown_goal(place, one.name, map_, faults)
 
 
 def _check_leaves(nodes: list[Plan], world: World, faults: Faults) -> None:

@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any, Final
 
+from pluto_bt.maps.numbers import NUMBER
 from pluto_bt.source import Faults, did_you_mean
 from pluto_bt.source.xml_reader import XmlElement
 from pluto_bt.trees.contracts import Contract
@@ -97,8 +98,5 @@ def _terms(value: Any) -> Iterator[Any]:
 
 
 def _seconds(text: str) -> float | None:
-    try:
-        value = float(text)
-    except ValueError:
-        return None
+    value = float(text) if NUMBER.fullmatch(text) else math.nan
     return value if 0.0 <= value < math.inf else None

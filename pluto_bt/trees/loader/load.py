@@ -21,7 +21,7 @@ from pluto_bt.trees.loader.files import MissionFiles, TreeSource, main_place
 from pluto_bt.trees.loader.foreign import add_models
 from pluto_bt.trees.loader.inputs import set_inputs
 from pluto_bt.trees.loader.library import add_library_trees
-from pluto_bt.trees.loader.registry import NodeType, node_types
+from pluto_bt.trees.loader.registry import NodeType, name_problem, node_types
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.loader.static import StaticCheck
 from pluto_bt.trees.mission import Mission
@@ -39,6 +39,7 @@ class Reading:
     report: Report
     main: TreeSource | None = None
     plan: Plan | None = None
+    candidates: Sequence[TreeSource] = ()  # for the main tree, where it is not said which is it
     unused: list[TreeSource] = field(default_factory=list)  # trees of the mission that the main tree does not use
     text: str = ""
     file: str = ""
@@ -132,19 +133,24 @@ def read_mission(
     StaticCheck(reading.files, reading.types, reading.report).run()
     if not has_frame:
         return reading
-    reading.main = _main_tree(reading, tree)
-    if reading.main is None:
-        return reading
+    main = _main_tree(reading, tree)
     for key, value in (blackboard or {}).items():
         reading.board.root.write(key, value)
-    set_inputs(reading.files, reading.main, reading.board.root, ports, reading.report)
+    if main is not None:
+        unfold(reading, main, ports)
+    return reading
+
+
+def unfold(reading: Reading, main: TreeSource, ports: Mapping[str, str] | None) -> None:
+    """Make `main` the main tree of a reading: its inputs and its plan."""
+    reading.main = main
+    set_inputs(reading.files, main, reading.board.root, ports, reading.report)
     own_trees = list(reading.files.trees.values())
     add_library_trees(reading.files)
     expansion = Expansion(reading.files, reading.types, reading.board, reading.report)
-    reading.plan = expansion.run(reading.main)
+    reading.plan = expansion.run(main)
     _tell_missing(reading)
     reading.unused = [source for source in own_trees if source.tree_id not in expansion.used]
-    return reading
 
 
 def _tell_missing(reading: Reading) -> None:
@@ -214,7 +220,9 @@ def _unreferenced(reading: Reading, known: str) -> TreeSource | None:
         return free[0]
     found = f"{len(free)} trees that no other refers to"
     what = "which tree is the main one is not said"
-    mend = f'add main_tree_to_execute="{(free or list(files.trees.values()))[0].tree_id}" to <root>, or give --tree'
+    reading.candidates = free
+    good = next((source.tree_id for source in free or files.trees.values() if not name_problem(source.tree_id)), "ID")
+    mend = f'add main_tree_to_execute="{good}" to <root>, or give --tree'
     reading.report.error(files.root.place, "no-main-tree", what, expected=f"one of: {known}", found=found, mend=mend)
     return None
 

@@ -26,6 +26,13 @@ class Report:
         self.faults.warning(place, code, message, expected=expected, found=found, mend=mend)
 
     @property
+    def doubtful(self) -> Report:
+        """A report to the same faults of what may never be ticked: what would fail then is a warning."""
+        report = Report(self.faults)
+        report.late = report.warning  # type: ignore[method-assign]
+        return report
+
+    @property
     def stops_loading(self) -> bool:
         """True if an error was found that is not only one of ticking."""
         return self._errors > self._late

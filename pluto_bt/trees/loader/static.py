@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from pluto_bt.source import did_you_mean, nearest_word
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
 from pluto_bt.trees.controls.parallel import absolute_count
+from pluto_bt.trees.controls.switch import same_value
 from pluto_bt.trees.engine.conditions import CONDITIONS
 from pluto_bt.trees.loader.files import MissionFiles, TreeSource
 from pluto_bt.trees.loader.literal_check import check_literal, check_script
@@ -103,7 +105,20 @@ class StaticCheck:
         autoremap = element.attributes.get("_autoremap")
         if autoremap is not None:
             check_literal(autoremap, PortModel("_autoremap", kind=BOOL), self._report, builtin=True)
+        else:
+            self._check_subtree_ports(element)
         self._check_private(element)
+
+    def _check_subtree_ports(self, element: XmlElement) -> None:
+        """A port that neither the model nor the tree itself knows; BehaviorTree.CPP takes any."""
+        tree, model = self._files.trees.get(element.get("ID")), self._files.subtree_models.get(element.get("ID"))
+        if tree is None or model is None:
+            return
+        for attribute in element.attributes.values():
+            if is_port_name(attribute.name) and attribute.name not in model.ports and not _names(tree.element, attribute.name):
+                known, mend = ", ".join(model.ports) or "none", did_you_mean(attribute.name, model.ports)
+                what = f'tree "{tree.tree_id}" has no port "{attribute.name}", nor does anything in it read one'
+                self._report.warning(attribute.place, "unknown-port", what, expected=f"one of: {known}", found=attribute.name, mend=mend)
 
     def _check_children(self, element: XmlElement, node_type: NodeType) -> None:
         count = len(element.children)
@@ -155,9 +170,22 @@ class StaticCheck:
                 report = self._report.error if port.at_load else self._report.late
                 what = f'port "{port.name}" of <{node_type.name}> is missing'
                 report(element.place, "missing-port", what, expected=f'{port.name}="…": {port.form}', found="nothing")
-        if node_type.name.startswith("Switch") and "variable" not in element.attributes:
-            what = f"<{node_type.name}> without variable always takes its last child"
+        if node_type.builtin and node_type.name.startswith("Switch"):
+            self._check_switch(element)
+
+    def _check_switch(self, element: XmlElement) -> None:
+        """A choice without a question, and cases that an earlier one always takes."""
+        if "variable" not in element.attributes:
+            what = f"<{element.tag}> without variable always takes its last child"
             self._report.warning(element.place, "missing-port", what, expected='variable="{key}"', found="nothing")
+        seen: list[XmlAttribute] = []
+        cases = [one for one in element.attributes.values() if one.name.startswith("case_") and key_of(one.name, one.value) is None]
+        for case in sorted(cases, key=lambda one: one.name):
+            earlier = next((one for one in seen if same_value(one.value, case.value, {})), None)
+            if earlier is not None:
+                what = f"{case.name} is never chosen: {earlier.name} takes the same value"
+                self._report.warning(case.value_place, "unreachable", what, expected="a value of its own", found=case.value)
+            seen.append(case)
 
     def _check_port(self, attribute: XmlAttribute, node_type: NodeType) -> None:
         port = node_type.ports.get(attribute.name)
@@ -210,3 +238,11 @@ class StaticCheck:
             what = f"failure_count {limit} has no effect: {most} failures already end it"
             place = element.attributes["failure_count"].value_place
             self._report.warning(place, "unreachable-threshold", what, expected=f"at most {most}", found=str(limit))
+
+
+def _names(element: XmlElement, key: str) -> bool:
+    """True if a value below `element` has the key as a word, in braces or in a script; or may pass it on unnamed."""
+    word, found = re.compile(rf"(?<!\w){re.escape(key)}(?!\w)"), list(element.children)
+    for inner in found:  # grows as it is walked
+        found += inner.children
+    return any("_autoremap" in inner.attributes or any(word.search(one.value) for one in inner.attributes.values()) for inner in found)

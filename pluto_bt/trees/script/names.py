@@ -21,21 +21,22 @@ class NameUse(NamedTuple):
 
 def names_used(text: str) -> tuple[NameUse, ...]:
     """All uses in a script; both branches of `?:` count as run. Raises ScriptSyntaxError."""
-    return tuple(use for statement in parse_script(text).statements for use in _uses(statement))
+    return tuple(use for statement in parse_script(text).statements for use in uses_of(statement))
 
 
-def _uses(term: Term) -> Iterator[NameUse]:
+def uses_of(term: Term) -> Iterator[NameUse]:
+    """All uses in one term."""
     if isinstance(term, Name):
         yield NameUse(term.name, term.position, "read")
     elif isinstance(term, Unary):
-        yield from _uses(term.operand)
+        yield from uses_of(term.operand)
     elif isinstance(term, (Chain, Comparison)):
-        yield from _uses(term.first)
+        yield from uses_of(term.first)
         for _, right in term.rest:
-            yield from _uses(right)
+            yield from uses_of(right)
     elif isinstance(term, Choice):
         for part in (term.condition, term.then, term.otherwise):
-            yield from _uses(part)
+            yield from uses_of(part)
     elif isinstance(term, Assignment):
         yield from _assigned(term)
 
@@ -44,5 +45,5 @@ def _assigned(term: Assignment) -> Iterator[NameUse]:
     name, position = term.target.name, term.target.position
     if term.sign not in (":=", "="):
         yield NameUse(name, position, "read")
-    yield from _uses(term.right)
+    yield from uses_of(term.right)
     yield NameUse(name, position, "write" if term.sign == ":=" else "change")

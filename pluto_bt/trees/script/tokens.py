@@ -12,7 +12,7 @@ INT64_MAX: Final = 2**63 - 1
 _BLANKS = re.compile(r"[ \t\r\n]*")
 _WORD = re.compile(r"[A-Za-z_@][A-Za-z0-9_]*")
 _HEX = re.compile(r"0[xX][0-9a-fA-F]+")
-_NUMBER = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?")
+_NUMBER = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?", re.ASCII)
 _GARBAGE = re.compile(r"[A-Za-z0-9_@.]*")
 _SIGN = re.compile(r"\.\.|&&|\|\||==|!=|<=|>=|:=|\+=|-=|\*=|/=|[-+*/&|^~!<>=?:();]")
 
