@@ -12,12 +12,12 @@ from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.ports import is_beyond
 from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.scopes import EMPTY, Scope
-from pluto_bt.trees.values import BOOL, DOUBLE, INT, Kind, PortProblem, declared_value
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, STRING, TEXTS, Kind, PortProblem, declared_value
 
 POINT, POINTS = kind_of_type(tuple[float, float]), kind_of_type(list[tuple[float, float]])
 # What a model may declare of an input, as `type`; other words are taken for C++ types that mean nothing here.
 DECLARED = {
-    "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL,
+    "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL, **dict.fromkeys(TEXTS, STRING),
     "point": POINT, "points": POINTS,
 }  # fmt: skip
 
