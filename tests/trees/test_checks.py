@@ -97,6 +97,24 @@ def test_entries(body: str, more: str, faults: list[str]) -> None:
     assert told(body, more) == faults
 
 
+ALIASES = [
+    # the SubTree tags, outermost first                                   the entry, as it is read, and the tag that gives it its meaning
+    ('<SubTree ID="B" t="{q}"/>', '<Sleep msec="{t}"/>', 'nothing writes entry "q", which is read here as "t"', '<text>:2:17'),
+    ('<SubTree ID="B" t="{=}"/>', '<Sleep msec="{t}"/>', 'nothing writes entry "t", which is read here', '<text>:2:17'),
+    ('<Sequence><SubTree ID="B" t="{q}"/><Script code="q := 5"/></Sequence>', '<Sleep msec="{t}"/>',
+     'entry "q" is read here as "t" before anything can have written it', '<text>:2:27'),
+    ('<SubTree ID="B" u="{q}"/>', '<SubTree ID="C" t="{u}"/>', 'nothing writes entry "q", which is read here as "t"', '<text>:2:17'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("tag", "body", "message", "place"), ALIASES)
+def test_an_entry_that_a_subtree_tag_leads_to_is_told_by_its_own_name(tag: str, body: str, message: str, place: str) -> None:
+    faults = check_mission(mission(tag, tree("B", body) + tree("C", '<Sleep msec="{t}"/>')))
+    (fault,) = [fault for fault in faults if fault.code == "unset-key"]
+    assert fault.message == message and "give the tag a port" not in fault.mend
+    assert f"at {place} leads to it" in fault.found
+
+
 MENDS = [
     ('<Sequence><Script code="place := \'1;2\'"/><GoTo goal="{plce}"/></Sequence>', "", 'did you mean "place"?'),
     ('<ScriptCondition code="@Localization_Pose_q > 1"/>', "", 'did you mean "@Localization_Pose_'),

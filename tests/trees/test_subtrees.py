@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from pluto_bt.source import Fault
 from pluto_bt.runtime import VirtualClock
+from pluto_bt.source import Fault
 from pluto_bt.trees import MissionError, TickError, check_mission, load_mission
 from tests.trees.harness import Bench
 
