@@ -14,6 +14,7 @@ from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
 from pluto_bt.trees.checks.entries import Home, Use, home_of, script_uses, uses_after, uses_before
 from pluto_bt.trees.checks.outcomes import GUARDS, Ends, S
 from pluto_bt.trees.engine.conditions import CONDITIONS
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
@@ -152,12 +153,14 @@ class Flow:
         parent = scope.parent
         if parent is not None and (self._is_given(parent, bare) or self._home(parent, bare) in self._writers):
             return f'map it on the <SubTree> tag: {bare}="{{{bare}}}"'
-        near = did_you_mean(bare, [name for home, name in self._writers if home == id(scope)] + ([*self._inputs] if parent is None else []))
+        enums, inputs = plugin_enums() if use.in_script else (), self._inputs if parent is None else ()
+        near = did_you_mean(bare, [*(name for home, name in self._writers if home == id(scope)), *inputs, *enums])
         if near:
             return near
         if parent is not None:
             return f"the entry is that of the SubTree alone: give the tag a port {bare}"
         quoted = f"a text stands in single quotes: '{bare}'; " if use.in_script else ""
+        quoted += "a name for a number comes from ENUMS of a plugin; " if quoted and bare.isupper() else ""
         return f"{quoted}write it first, or declare it as an input in TreeNodesModel"
 
 
