@@ -385,14 +385,15 @@ MAIN_INPUTS = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree I
 
 @pytest.mark.parametrize(("ports", "code", "words"), [
     ({"plcae": "4;2"}, "unknown-input", 'did you mean "place"'),
-    ({"place": "4;x"}, "bad-input", "expected x;y"),
+    ({"place": "4;x"}, "bad-input", "x;y"),
     ({"place": "1e12;3"}, "bad-input", "beyond 1e+06 m"),
     ({"place": "4;2", "goals": ""}, "bad-input", "no element"),
     ({"place": "4;2", "goals": "1,2;1e7,2"}, "bad-input", "beyond 1e+06 m"),
 ])  # fmt: skip
 def test_one_slip_in_an_input_is_one_fault(ports: dict[str, str], code: str, words: str) -> None:
     (fault,) = check_mission(MAIN_INPUTS, ports=ports)
-    assert fault.code == code and fault.file.startswith("--port") and words in fault.mend
+    assert fault.code == code and fault.file.startswith("--port") and words in f"{fault.expected} {fault.mend}"
+    assert not fault.mend.startswith("expected")
     assert check_mission(MAIN_INPUTS, ports={"place": "4;2"}) == ()
 
 

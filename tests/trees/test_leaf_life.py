@@ -329,3 +329,29 @@ def test_a_tick_that_would_never_end_is_an_error() -> None:
     mission = mission_of('<Repeat num_cycles="-1"><AlwaysSuccess/></Repeat>')
     with pytest.raises(TickError, match="a tick does not end"):
         mission.tick_once()
+
+
+class NeedsAGoal(BehaviourWithPorts):
+    """Reads its port and is done."""
+
+    INPUT_PORTS: ClassVar = {"goal": Port(tuple[float, float])}
+    OUTPUT_PORTS: ClassVar = {}
+
+    def update(self) -> Status:
+        self.get_input("goal")
+        return Status.SUCCESS
+
+
+@pytest.mark.parametrize(
+    ("ports", "text"),
+    [
+        ('goal="{place}"', "port 'goal': 'door' is no point: expected x;y"),
+        ('goal="{nothing}"', "input port 'goal' has no data: entry 'nothing' has no value"),
+    ],
+)
+def test_a_port_that_cannot_be_read_is_told_without_words_of_python(ports: str, text: str) -> None:
+    text_of_mission = f'<root BTCPP_format="4"><BehaviorTree ID="A"><NeedsAGoal name="out" {ports}/></BehaviorTree></root>'
+    mission = load_mission(text_of_mission, nodes=[NeedsAGoal], clock=VirtualClock(), blackboard={"place": "door"})
+    with pytest.raises(TickError) as caught:
+        mission.tick_once()
+    assert caught.value.reason == text

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pluto_bt.maps.numbers import MAX_METRES
 from pluto_bt.source import Place, did_you_mean, nearest_word
 from pluto_bt.trees.loader.files import MissionFiles, Model, TreeSource
+from pluto_bt.trees.loader.literal_check import new_words
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.ports import is_beyond
@@ -52,7 +53,7 @@ def _write(root: Scope, name: str, text: str, type_name: str, place: Place, repo
         problem = _problem(kind, text, may_be_empty)
         if problem:
             what = f'input "{name}" is declared as {type_name}; "{text}" is none'
-            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=problem)
+            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=new_words(problem, kind.form))
             return
     try:
         root.write(name, declared_value(text, type_name))
