@@ -11,6 +11,7 @@ from pluto_bt.resume import HELD
 from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 from pluto_bt.runtime.latch import OPERATOR_STOP
 from pluto_bt.runtime.lockstep import Lockstep
+from pluto_bt.runtime.precedence import precedence
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
 from pluto_bt.skills import approach, obstacles, plan_map, wall_path
@@ -104,12 +105,13 @@ class Loop:
 
     def _threads_until(self, scheduler: Threads, is_over: Callable[[], bool]) -> None:
         system = self._system
-        while not is_over():
-            wait(self._interrupt, LOOK_EVERY_S)
-            system.options.on_progress(system)
-            stuck = scheduler.stuck_part(THREADS_LIMIT_S)
-            if stuck is not None and stuck.fault != "hang":
-                system.guard.hung(stuck)
+        with precedence(wanted=scheduler.goes_first):  # else the chain would wait for whoever stops this thread while it has the interpreter
+            while not is_over():
+                wait(self._interrupt, LOOK_EVERY_S)
+                system.options.on_progress(system)
+                stuck = scheduler.stuck_part(THREADS_LIMIT_S)
+                if stuck is not None and stuck.fault != "hang":
+                    system.guard.hung(stuck)
 
     def _is_over(self) -> bool:
         system, guard = self._system, self._system.guard

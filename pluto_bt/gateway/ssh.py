@@ -23,7 +23,7 @@ from pluto_bt.gateway.key_ring import KeyRing, shown_name
 from pluto_bt.gateway.listen import Address, parse_address
 from pluto_bt.gateway.pulse import BEAT_S
 from pluto_bt.gateway.ssh_visit import Visit
-from pluto_bt.runtime.precedence import may_take_precedence
+from pluto_bt.runtime.precedence import precedence
 
 LOGIN_S = 15
 KEEPALIVE_S, KEEPALIVES = 3, 3
@@ -121,7 +121,9 @@ async def _beat(leash: socket.socket) -> None:
 def main() -> None:
     """`ssh LEASH_FD LISTENER_FD GATEWAY KEYS HOST_KEY`."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the run's terminal is the executive's
-    if not may_take_precedence():  # the control loop is not sure to go before the arithmetic of logins
+    with precedence() as is_permitted:
+        pass
+    if not is_permitted:  # the control loop is not sure to go before the arithmetic of logins
         os.nice(NICENESS)
     logging.getLogger("asyncssh").setLevel(logging.CRITICAL)  # who cannot get in is told so himself
     import_module("pluto_bt.gateway.shell.console")  # now: when the first visitor comes it would hold up all others

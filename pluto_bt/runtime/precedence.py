@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 PRIORITY = 1
 """Of the real-time priorities the least: before every ordinary program, after all that was given one on purpose."""
@@ -25,10 +26,12 @@ def take_precedence() -> bool:
     return True
 
 
-def may_take_precedence() -> bool:
-    """Whether a thread of this user could; tried by a thread that ends."""
-    answers: list[bool] = []
-    thread = threading.Thread(target=lambda: answers.append(take_precedence()))
-    thread.start()
-    thread.join()
-    return answers[0]
+@contextmanager
+def precedence(*, wanted: bool = True) -> Iterator[bool]:
+    """The same for a while: afterwards the thread is an ordinary one. True within, if it was `wanted` and is permitted."""
+    taken = wanted and take_precedence()
+    try:
+        yield taken
+    finally:
+        if taken:  # without the second word only root could go back
+            os.sched_setscheduler(0, os.SCHED_OTHER | os.SCHED_RESET_ON_FORK, os.sched_param(0))

@@ -13,12 +13,13 @@ from pluto_bt.runtime.supervision import Part, Waker
 class _Group(threading.Thread):
     """The parts of one group, stepped when due or woken."""
 
-    def __init__(self, name: str, parts: Sequence[Part], clock: MonotonicClock) -> None:
+    def __init__(self, name: str, parts: Sequence[Part], clock: MonotonicClock, goes_first: bool) -> None:
         super().__init__(name=f"pluto-{name}", daemon=True)
         self.parts = tuple(parts)
         self.current: Part | None = None
         self.busy_since_ns = 0
         self.clock = clock
+        self._goes_first = goes_first
         self.late_ns = 0
         self._wake = threading.Condition()
         self._woken: set[int] = set()
@@ -37,7 +38,7 @@ class _Group(threading.Thread):
             self._wake.notify()
 
     def run(self) -> None:
-        if self.clock.speed <= 1.0:  # a simulation in a hurry is nobody's robot, and would take the processor from all others
+        if self._goes_first:
             take_precedence()
         now_ns = self.clock.now_ns()
         due_ns = [now_ns if part.period_ns else -1 for part in self.parts]
@@ -75,13 +76,18 @@ class _Group(threading.Thread):
 
 
 class Threads:
-    """Steps parts in real time (or at `--speed` times it), one thread a group."""
+    """Steps parts in real time (or at `--speed` times it), one thread a group.
+
+    Attributes:
+        goes_first: its threads ask to go before the computer's ordinary programs.
+    """
 
     def __init__(self, parts: Sequence[Part], clock: MonotonicClock) -> None:
         self.parts = tuple(parts)
         self._clock = clock
         names = tuple(dict.fromkeys(part.module.group for part in parts))
-        self._groups = {name: _Group(name, [part for part in parts if part.module.group == name], clock) for name in names}
+        self.goes_first = clock.speed <= 1.0  # a simulation in a hurry is nobody's robot, and would take the processor from all others
+        self._groups = {name: _Group(name, [part for part in parts if part.module.group == name], clock, self.goes_first) for name in names}
 
     def start(self) -> None:
         """Start the threads; the parts themselves have been started by the caller."""

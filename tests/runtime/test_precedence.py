@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from pluto_bt.runtime.clock import MonotonicClock
-from pluto_bt.runtime.precedence import may_take_precedence, take_precedence
+from pluto_bt.runtime.precedence import precedence, take_precedence
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.threads import Threads
 
@@ -36,7 +36,7 @@ def policy() -> int:
 
 @pytest.fixture
 def permitted() -> None:
-    if not may_take_precedence():
+    if not in_a_thread(take_precedence):
         pytest.skip("this user may not schedule in real time (ulimit -r)")
 
 
@@ -68,9 +68,23 @@ def test_a_process_that_such_a_thread_starts_is_an_ordinary_one() -> None:
     assert int(in_a_thread(start)) == os.SCHED_OTHER
 
 
+@pytest.mark.usefixtures("permitted")
+def test_precedence_for_a_while_ends_and_is_not_taken_unless_wanted() -> None:
+    def look() -> tuple[int, int, int]:
+        with precedence(wanted=False):
+            unwanted = policy()
+        with precedence():
+            within = policy()
+        return unwanted, within, policy()
+
+    assert in_a_thread(look) == (os.SCHED_OTHER, os.SCHED_RR, os.SCHED_OTHER)
+
+
 def test_who_may_not_runs_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*unused: object) -> None:
         raise PermissionError(1, "Operation not permitted")
 
     monkeypatch.setattr(os, "sched_setscheduler", refuse)
-    assert not take_precedence() and not may_take_precedence()
+    assert not take_precedence()
+    with precedence() as taken:
+        assert not taken
