@@ -171,7 +171,7 @@ def test_digits_are_a_real_number_where_the_model_declares_one(declared: str) ->
 
 def test_a_clash_is_told_at_the_literal_that_makes_it() -> None:
     (fault,) = _faults_of_digits("")
-    assert (fault.line, fault.code) == (2, "type-clash") and "<text>:3:43 needs double" in fault.message and '"40.0"' in fault.mend
+    assert (fault.line, fault.code) == (2, "type-clash") and "<text>:3:42 needs double" in fault.message and '"40.0"' in fault.mend
 
 
 TOLD = """<BehaviorTree ID="B">
