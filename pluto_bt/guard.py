@@ -32,6 +32,7 @@ class Guard:
 
     def __init__(self, system: System) -> None:
         self._system = system
+        self._newest_raw = system.board.reader("ATRV2/Drive/Raw")
         self.ended: End | None = None
 
     def end(self, reason: str, text: str) -> None:
@@ -64,8 +65,8 @@ class Guard:
 
     def look(self) -> None:
         """End the run if the base has fallen silent."""
-        raw, now_s = self._system.board.newest("ATRV2/Drive/Raw"), self._system.clock.now_s()
-        if now_s - (0.0 if raw is None else raw.written_s) > BASE_LOST_AFTER_S:
+        raw = self._newest_raw()
+        if self._system.clock.now_s() - (0.0 if raw is None else raw.written_s) > BASE_LOST_AFTER_S:
             self.end("base-lost", f"the base has sent no odometry for {BASE_LOST_AFTER_S:g} s")
 
     # ------------------------------------------------------------------ faults that a world script asks for

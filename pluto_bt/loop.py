@@ -9,12 +9,13 @@ from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.resume import HELD
 from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
+from pluto_bt.runtime.collector import rarely_collecting
 from pluto_bt.runtime.latch import OPERATOR_STOP
 from pluto_bt.runtime.lockstep import Lockstep
 from pluto_bt.runtime.precedence import precedence
 from pluto_bt.runtime.threads import Threads
 from pluto_bt.runtime.watchdog import Hung, Watchdog
-from pluto_bt.skills import approach, obstacles, plan_map, wall_path
+from pluto_bt.skills import approach, obstacles, path_following, plan_map, seen_space, wall_path
 from pluto_bt.system import System
 from pluto_bt.trees import Mission
 from pluto_bt.trees.activity import PAUSED
@@ -41,9 +42,11 @@ def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
         approach.warm()
     if system.options.robot.devices.sonar is not None or system.options.robot.devices.laser is not None:
         obstacles.warm()
+        seen_space.warm()
     if with_jobs:
         system.robot.surroundings.warm()
         plan_map.warm()
+        path_following.warm()
     if with_walls:
         wall_path.warm()
 
@@ -73,8 +76,9 @@ class Loop:
         system.scheduler.start()
         begun_ns = wall_ns()
         try:
-            self._until(self._is_over)
-            self._settle()
+            with rarely_collecting():
+                self._until(self._is_over)
+                self._settle()
         finally:
             self.wall_time_s = (wall_ns() - begun_ns) / NS
             if isinstance(system.scheduler, Threads):
@@ -118,7 +122,7 @@ class Loop:
         mission, limit_s = system.executive.core.mission, system.options.max_time_s
         if guard.ended is not None or (mission is not None and mission.is_over):
             return True
-        if (asked := self._asked_of_nobody()) and limit_s is None:
+        if limit_s is None and (asked := self._asked_of_nobody()):
             guard.end(HELD, asked)
         elif self._interrupt.is_set():
             guard.end("interrupted", "interrupted: Ctrl-C, SIGTERM, or the terminal was closed")
@@ -131,9 +135,10 @@ class Loop:
     def _asked_of_nobody(self) -> str:
         """Why the mission waits for an operator where there is none, in virtual time without a gateway; "" else."""
         system = self._system
-        if system.options.takes_orders or not isinstance(system.scheduler, Lockstep):
+        stop = system.latch.hold(OPERATOR_STOP)
+        if (stop is None and not self.held) or system.options.takes_orders or not isinstance(system.scheduler, Lockstep):
             return ""
-        stop, mission = system.latch.hold(OPERATOR_STOP), system.executive.core.mission
+        mission = system.executive.core.mission
         if self.held or stop is None or mission is None or mission.state != PAUSED:
             return self.held
         return f"{stop.text}, and nobody is there to let it go on; with --gateway or --realtime an operator can"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -52,7 +52,7 @@ class Options:
     record: RecordRequest | None = None
     own_clock: StepClock | None = None
     load: Callable[..., Mission] = load_mission
-    load_checked: Callable[[str], Mission] = load_checked  # what somebody asks for while it runs
+    load_checked: Callable[[str, Mapping[str, str]], Mission] = load_checked  # what somebody asks for while it runs
     on_event: Callable[[Event], None] = lambda event: None
     on_progress: Callable[[System], None] = lambda system: None
     on_compiling: Callable[[], None] = lambda: None  # told before the run, if kernels must be compiled first

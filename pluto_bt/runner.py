@@ -6,7 +6,7 @@ import math
 import secrets
 import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -179,8 +179,8 @@ def make_runner(
     def load(text: str | Path, **more: Any) -> Mission:
         return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
 
-    def load_to_order(text: str) -> Mission:
-        return load_checked(text, nodes, own_clock or clock, topics=topics)
+    def load_to_order(text: str, ports: Mapping[str, str]) -> Mission:
+        return load_checked(text, ports, nodes, own_clock or clock, topics=topics)
 
     mission = load(inputs.mission_path, **of_file)
     resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
 from pathlib import Path
@@ -23,7 +24,7 @@ def known():
     kernels = [one for one in gc.get_objects() if isinstance(one, Kernel) and one._compiled is not None]
     return {(one.__module__, one.__name__, str(signature)) for one in kernels for signature in one._compiled.signatures}
 
-request = Request("patrol.xml", world=sys.argv[1], platform=sys.argv[2], port=["goals=16,0.2;1,0"])
+request = Request(sys.argv[3], world=sys.argv[1], platform=sys.argv[2], port=sys.argv[4:])
 runner = make_runner(read_inputs(request), max_time_s=60.0)
 rehearsed = known()
 runner.run()
@@ -35,6 +36,17 @@ print(len(rehearsed) > 5, sorted(known() - rehearsed))
 def test_what_people_and_things_need_is_compiled_before_the_run(platform: str, tmp_path: Path) -> None:
     """A free field at the start: what an obstacle, a walker or a touch needs, the first half second does not show."""
     (tmp_path / "field.xml").write_text(FIELD, encoding="utf-8")
-    command = [sys.executable, "-c", TELL_LATE, str(tmp_path / "field.xml"), platform]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert (done.stdout, done.returncode) == ("True []\n", 0), done.stderr
+    assert compiled_late(str(tmp_path / "field.xml"), platform, "patrol.xml", "goals=16,0.2;1,0") == []
+
+
+@pytest.mark.parametrize(("mission", "world"), [("t13_move_to.xml", "yard.xml"), ("t17_find_the_way.xml", "office.xml")])
+def test_what_a_job_needs_is_compiled_before_the_run(mission: str, world: str) -> None:
+    """Scans that look down, the map that they are entered in, ways over it."""
+    assert compiled_late(world, "atrv2", mission) == []
+
+
+def compiled_late(*arguments: str) -> list[tuple[str, str, str]]:
+    """The kernels, each with its signature, that a run compiles after its rehearsal."""
+    done = subprocess.run([sys.executable, "-c", TELL_LATE, *arguments], capture_output=True, text=True, check=False)
+    assert done.stdout.startswith("True "), done.stdout + done.stderr
+    return list(ast.literal_eval(done.stdout.removeprefix("True ")))

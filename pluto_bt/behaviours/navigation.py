@@ -128,10 +128,9 @@ class Navigation:
 
     def smoothed(self, path: MapPath) -> MapPath:
         """The same way with rounder corners, as far as there is room."""
-        rooms_m = self.rooms_m()
-        if rooms_m is None or len(path) < 3:
+        if self._planner is None or len(path) < 3:
             return path
-        points = smoothed(resampled(path.points, STEP_M), rooms_m, self.least_m + self.parameters.room_m)
+        points = smoothed(resampled(path.points, STEP_M), self._planner.map, self.least_m + self.parameters.room_m)
         return MapPath.along(points, float(path.poses[-1, 2]) if path.ends_turned else None, path.stamp_ns)
 
     def rooms_m(self) -> Callable[[Array], Array] | None:

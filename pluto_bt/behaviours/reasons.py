@@ -41,6 +41,7 @@ REASONS: Final[dict[str, Reason]] = {
     "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose, then go on"),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
     "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
+    "no-input": Reason("a port that the leaf needs has no value on this way", "write its entry on every way that leads there, see the message"),
     "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object"),
     "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map"),
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),

@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterator
 from pluto_bt.runtime.clock import NS, wait, wall_ns
 
 CHUNK = 64 * 1024
+DOCUMENT_S = 3.0
 GIGABYTE = 1 << 30
 BOMB = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10 if i else "lol"}">' for i in range(10))
 
@@ -65,6 +66,7 @@ STREAMS: dict[str, Callable[[], Iterator[bytes]]] = {
     "undefined-entity": once(b'<ping t="&nothing;"/>'),
     "xinclude": once(b'<mission op="check"><root><xi:include href="file:///etc/passwd" parse="text"/></root></mission>x'),
     "instruction": once(b'<ping><?xml-stylesheet href="file:///etc/passwd"?></ping>'),
+    "mission-names": lambda: iter([b'<mission op="check"><root>', *(b'<n%d a%d=""/>' % (i, i) for i in range(40_000)), b"</root></mission>"]),
     "depth": endless(b"", b"<a>"),
     "mission-depth": endless(b'<mission op="load"><root>', b"<a>"),
     "utf-16": once('<ping t="1"/>'.encode("utf-16")),
@@ -139,6 +141,26 @@ def never_read(connection: socket.socket) -> None:
     connection.send(b'<subscribe topic="*"/><describe/><modules/><log/>' * 5)
 
 
+def documents(port: int, until_s: float) -> dict[str, object]:
+    """Sixty at a time send a mission of a megabyte, and hang up."""
+    node = b'<GoTo goal="1;2"/>'
+    document = b'<mission op="check"><root><Sequence>' + node * (1_000_000 // len(node)) + b"</Sequence></root></mission>"
+    cuts = 0
+
+    def one() -> None:
+        with contextlib.suppress(OSError), socket.create_connection(("127.0.0.1", port), timeout=DOCUMENT_S) as connection:
+            connection.sendall(document)
+
+    while now_s() < until_s or not cuts:
+        crowd = [threading.Thread(target=one) for _ in range(60)]
+        for sender in crowd:
+            sender.start()
+        for sender in crowd:
+            sender.join()
+        cuts += len(crowd)
+    return {"cuts": cuts, "codes": [], "most_bytes": len(document), "longest_s": 0.0}
+
+
 def storm(port: int, until_s: float) -> dict[str, object]:
     """Connect and go, as fast as can be."""
     cuts = 0
@@ -172,7 +194,7 @@ def main() -> None:
     elif name in CROWDS:
         told = crowd(port, until_s, *CROWDS[name])
     else:
-        told = {"storm": storm, "burn": burn}[name](port, until_s)
+        told = {"storm": storm, "documents": documents, "burn": burn}[name](port, until_s)
     print(json.dumps(told))
 
 

@@ -15,9 +15,9 @@ from pluto_bt.gateway.client import Client
 from pluto_bt.runtime.clock import wait, wall_ns
 
 FLOODS = ("pings", "stops", "gets", "describes", "new-names")
-ENDLESS = ("attribute", "text", "name", "comment", "white-space", "mission", "attributes", "depth", "mission-depth")
+ENDLESS = ("attribute", "text", "name", "comment", "white-space", "mission", "mission-names", "attributes", "depth", "mission-depth")
 GROUPS = {
-    "endless messages": ENDLESS, "floods": FLOODS, "crowds": (*CROWDS, "storm"),
+    "endless messages": ENDLESS, "floods": FLOODS, "crowds": (*CROWDS, "storm", "documents"),
     "rubbish and bombs": tuple(name for name in STREAMS if name not in (*ENDLESS, *FLOODS)),
 }  # fmt: skip
 GROUP_S, PING_EVERY_S, SETTLE_S = 12.0, 0.006, 3.0

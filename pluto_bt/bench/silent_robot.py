@@ -14,7 +14,7 @@ from pluto_bt.blackboard.messages import ActuatorState, Event, Flag, MissionStat
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address
-from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.gateway.port import NO_PORTS, Newest, RefusedError, RunState
 from pluto_bt.gateway.replies import Cause, Item, ParamsState
 from pluto_bt.gateway.requests import Params
 from pluto_bt.runtime.clock import NS, wait, wall_ns
@@ -98,11 +98,11 @@ class SilentRobot:
         """None."""
         return ()
 
-    def mission(self, op: str, name: str, text: str, source: str) -> None:
+    def mission(self, op: str, name: str, text: str, source: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Refused."""
         self._refuse()
 
-    def prepare_mission(self, op: str, name: str, text: str) -> None:
+    def prepare_mission(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Nothing to read."""
 
     def mission_text(self, name: str) -> str:

@@ -32,18 +32,19 @@ class TopicError(PlutoError):
 class Publisher:
     """The one right to write a topic."""
 
-    __slots__ = ("_board", "_index", "_type")
+    __slots__ = ("_index", "_name", "_type", "_write")
 
     def __init__(self, board: Blackboard, index: int, topic: Topic) -> None:
-        self._board = board
+        self._write = board._write
         self._index = index
+        self._name = topic.name
         self._type = topic.type
 
     def put(self, value: Message, now_s: float) -> None:
         """Make `value` the newest one and wake whoever waits for the topic."""
         if type(value) is not self._type:
-            raise TopicError(f"{self._board.topics[self._index].name} carries {self._type.__name__}, not {type(value).__name__}")
-        self._board._write(self._index, value, now_s)
+            raise TopicError(f"{self._name} carries {self._type.__name__}, not {type(value).__name__}")
+        self._write(self._index, value, now_s)
 
 
 def enclosing(samples: tuple[Sample, ...], stamp_s: float) -> tuple[Sample, Sample] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import Any
 import msgspec
 
 from pluto_bt.gateway.replies import AnyReply, Error
+from pluto_bt.gateway.tally import Entry, Tally
 from pluto_bt.gateway.wire import Ask, Refused
 from pluto_bt.runtime.clock import calendar_ns
 from pluto_bt.runtime.state_folder import open_private, state_path
@@ -29,6 +31,9 @@ def default_path() -> Path:
 class Audit:
     """`note` never waits, and may be called in any thread; `step` writes. At 16 MiB the file becomes FILE.1, that FILE.2 and so on to FILE.4.
 
+    What a client is refused again and again for the same reason, or does again and again while nobody does anything else, stands there once; how
+    often it came again is told after 30 s, or when it is over (`times` more since second `since_s` of the run).
+
     What cannot be written is tried again, later each time. What cannot be kept so long is counted, and the count is written.
 
     Args:
@@ -40,8 +45,9 @@ class Audit:
         self._path, self._trouble = path, trouble
         self._waiting: deque[bytes] = deque()
         self._lost: deque[None] = deque()  # one each, for it is safe in all threads
+        self._tally = Tally()
         self._encoder = msgspec.json.Encoder()
-        self._retry_s, self._next_s = 0.0, float("-inf")
+        self._retry_s, self._next_s = 0.0, -math.inf
 
     def note(self, ask: Ask, reply: AnyReply, run_s: float) -> None:
         """A request and its answer."""
@@ -60,16 +66,32 @@ class Audit:
             self._lost.append(None)
             return
         size_bytes = len(self._encoder.encode(content))
+        deed = what, self._encoder.encode({name: word for name, word in content.items() if name != "id"})
         if size_bytes > CONTENT_BYTES:  # a mission, say
             content = {"bytes": size_bytes}
         who = {"client": sender.client, "name": sender.name[:NAME_CHARACTERS], "session": sender.session, "peer": sender.peer}
-        self._waiting.append(self._line(run_s, who | {"request": what, "content": content, "outcome": outcome}))
+        entry = who | {"request": what, "content": content, "outcome": outcome}
+        if outcome == "ok":
+            self._write_sums(run_s, self._tally.deed(deed))
+        kind = deed if outcome == "ok" else outcome
+        if self._tally.is_first((sender.client, kind), (sender.peer.rpartition(":")[0], kind), entry, run_s):
+            self._waiting.append(self._line(run_s, entry))
+
+    def _write_sums(self, run_s: float, sums: list[Entry]) -> None:
+        self._waiting.extend(self._line(run_s, entry) for entry in sums)
 
     def _line(self, run_s: float, entry: dict[str, Any]) -> bytes:
         return self._encoder.encode({"at_ns": calendar_ns(), "run_s": round(run_s, 3)} | entry) + b"\n"
 
+    def end(self, now_s: float) -> None:
+        """Write all that is known."""
+        self._write_sums(now_s, self._tally.due(math.inf))
+        self._next_s = -math.inf
+        self.step(now_s)
+
     def step(self, now_s: float) -> None:
         """Write what waits."""
+        self._write_sums(now_s, self._tally.due(now_s))
         if self._path is None or not self._waiting or now_s < self._next_s:
             return
         n_lost, lines = len(self._lost), list(self._waiting)

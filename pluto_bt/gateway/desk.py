@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 from pluto_bt.gateway import inquiries, replies, requests
 from pluto_bt.gateway.audit import Audit
 from pluto_bt.gateway.callers import Callers
-from pluto_bt.gateway.leases import Held, Leases
+from pluto_bt.gateway.helm import Helm
 from pluto_bt.gateway.outcomes import Outcomes
 from pluto_bt.gateway.port import RefusedError, RobotPort
-from pluto_bt.gateway.replies import AnyReply, Error, LeaseState, Ok, with_id
+from pluto_bt.gateway.replies import AnyReply, Error, Ok, with_id
 from pluto_bt.gateway.requests import actuator
 from pluto_bt.gateway.runs import Runs
 from pluto_bt.gateway.wire import Answer, Ask, Key, source_of
@@ -30,7 +30,7 @@ class Desk:
         self._port = port
         self._send = send
         self._audit = audit
-        self._leases = Leases()
+        self._helm = Helm(port, self._end_run)
         self._outcomes = Outcomes()
         self._runs = Runs(port, self._tell)
         self._callers = Callers()
@@ -66,7 +66,7 @@ class Desk:
     def handle(self, ask: Ask, stops: int, now_s: float) -> None:
         """Answer one request; `stops` is the count of stops when it came."""
         key, left = self._callers.meet(ask)
-        self._end(left)
+        self._helm.gone(left)
         self._notice(now_s)
         try:
             reply, later = self._answer(ask, key, stops, now_s)
@@ -84,23 +84,16 @@ class Desk:
         """What happened since: a stop ends the run that it met (not one that is asked for after it), a lease ran out."""
         while self._stopped:
             self._runs.finish("cancelled", "stopped", f"{self._stopped.popleft()} stopped the robot")
-        lost = self._leases.expire(now_s)
-        if lost is not None:
-            self._lost(lost, "ran out")
+        self._helm.expire(now_s)
 
     def gone(self, client: int) -> None:
         """A client is no more: his lease ends, unless his session has a newer connection."""
-        self._end(self._callers.gone(client))
+        self._helm.gone(self._callers.gone(client))
 
     def gateway_lost(self) -> None:
         """The gateway died: who has a named session may come back within his ttl, the others cannot."""
         for key in self._callers.all_gone():
-            self._end(key)
-
-    def _end(self, key: Key | None) -> None:
-        held = self._leases.end(key) if key is not None else None
-        if held is not None:
-            self._lost(held, "ended with his connection")
+            self._helm.gone(key)
 
     # answers -----------------------------------------------------------------------------------------------------
     def _answer(self, ask: Ask, key: Key, stops: int, now_s: float) -> tuple[AnyReply, Sequence[AnyReply]]:
@@ -110,7 +103,7 @@ class Desk:
             case requests.Command() | requests.Run():
                 return self._act(ask, request, key, stops, now_s)
             case requests.Lease():
-                return self._lease(request, key, ask, now_s), []
+                return self._helm.answer(request, key, ask.name or ask.session or f"#{ask.client}", now_s), []
             case requests.MissionOp():
                 return self._mission(ask, request, key, stops), []
             case requests.Log():
@@ -135,7 +128,7 @@ class Desk:
             case requests.SetTopic():
                 port.set_topic(request.topic, request.fields, source_of(ask))
             case requests.Release():
-                self._require_lease(key, now_s)
+                self._helm.require(key, now_s)
                 port.release_estop(source_of(ask))
             case requests.Cancel():
                 self._cancel(request.run, key, now_s, source_of(ask))
@@ -150,7 +143,7 @@ class Desk:
         known = self._outcomes.find(ask.key, request)
         if known is not None:
             return known.direct, known.later
-        self._require_lease(key, now_s)
+        self._helm.require(key, now_s)
         self._require_movable(stops)
         state = self._port.mission_state().state
         if state in ("running", "stopping"):
@@ -170,11 +163,6 @@ class Desk:
         self._stop_again(stops, ask)
         return reply, []
 
-    def _require_lease(self, key: Key, now_s: float) -> None:
-        if not self._leases.holds(key, now_s):
-            held = self._leases.held
-            raise RefusedError("no-lease", f'the lease is held by {held.name if held else "nobody"}; acquire it first: <lease op="acquire"/>')
-
     def _require_movable(self, stops: int) -> None:
         reason = self._port.estop_reason()
         if reason is not None:
@@ -187,54 +175,28 @@ class Desk:
         if stops != self.stops:
             self._port.stop(source_of(ask))
 
-    def _lease(self, request: requests.Lease, key: Key, ask: Ask, now_s: float) -> LeaseState:
-        name = ask.name or ask.session or f"#{ask.client}"
-        match request.op:
-            case "acquire":
-                self._leases.acquire(key, name, request.ttl_s, request.on_loss, now_s)
-            case "take":
-                lost = self._leases.take(key, name, request.ttl_s, request.on_loss, now_s)
-                if lost is not None:
-                    self._lost(lost, f"was taken by {name}", "preempted")
-            case "renew":
-                self._leases.renew(key, now_s)
-            case "release":
-                held = self._leases.end(key)
-                if held is None:
-                    raise RefusedError("no-lease", "expected the holder of the lease")
-        return inquiries.lease(self._leases.held, key, now_s)
-
-    def _lost(self, held: Held, why: str, state: str = "cancelled") -> None:
-        """Do what the holder asked for when he took the lease."""
-        if held.on_loss == "continue":
-            return
-        source = f"the lease of {held.name} {why}"
-        if held.on_loss == "stop":
-            self._port.stop(source)
-        elif self._port.mission_state().state == "running":
-            self._port.mission("pause", "", "", source)
-        if self._runs.active is not None and self._runs.active.key == held.key:
-            self._runs.finish(state, state, source)
+    def _end_run(self, key: Key, state: str, why: str) -> None:
+        """The run of this key, if one goes on, ends with its lease."""
+        if self._runs.active is not None and self._runs.active.key == key:
+            self._runs.finish(state, state, why)
 
     def _cancel(self, run: str, key: Key, now_s: float, source: str) -> None:
         active = self._runs.active
         if active is None or active.run != run:
             raise RefusedError("wrong-state", f'run "{run}" is not going on; ' + (f'"{active.run}" is' if active else "none is"))
         if active.key != key:
-            self._require_lease(key, now_s)
+            self._helm.require(key, now_s)
         self._runs.finish("cancelled", "cancelled", f"{source} cancelled the run")
 
     def _mission(self, ask: Ask, request: requests.MissionOp, key: Key, stops: int) -> AnyReply:
         port = self._port
         if request.op in _MOVES:
             self._require_movable(stops)
-            held = self._leases.held
-            if held is not None and held.key != key:
-                raise RefusedError("lease-held", f"{held.name} drives; a mission starts when the lease is free or yours")
+            self._helm.require_free_for(key)
         told = inquiries.mission(port, request)
         if told is not None:
             return told
-        port.mission(request.op, request.name, request.text, source_of(ask))
+        port.mission(request.op, request.name, request.text, source_of(ask), request.ports)
         if request.op in _MOVES:
             self._stop_again(stops, ask)
         return Ok()

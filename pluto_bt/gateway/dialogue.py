@@ -13,7 +13,8 @@ from collections.abc import Mapping
 from xml.etree import ElementTree
 
 from pluto_bt.gateway.ask import Ask, Fate, fate
-from pluto_bt.gateway.errors import BadRequestError, GatewayError, NoAnswerError, NoConnectionError, TurnedAwayError, UnheardError, error_in
+from pluto_bt.gateway.errors import BadRequestError, GatewayError, NoAnswerError, NoConnectionError, TurnedAwayError, error_in
+from pluto_bt.gateway.parting import PASSING, Parting
 from pluto_bt.gateway.xml_text import Attribute, element
 
 Element = ElementTree.Element
@@ -22,9 +23,6 @@ QUIET_S = 10.0  # so long without a word, and the line is tried by a ping
 MUTE_S = 20.0  # so long have we said nothing: the gateway takes who is mute for a minute for gone, however well he listens
 LINE_BYTES = 64 << 20  # what answers with longer lines is no gateway
 RENEWALS = 3  # in the time of one lease, if nothing else is asked for
-NO_PLACE = "too-many-connections"
-UNHEARD = "without a word (one with TLS does so to a client without its certificate: name it in PLUTO_CERTIFICATE, a program by tls=)"
-PASSING = frozenset({"slow-consumer", "timeout", NO_PLACE})  # fatal, but a new connection may fare better
 
 
 class Dialogue:
@@ -49,9 +47,7 @@ class Dialogue:
         self.lease_error: GatewayError | None = None
         self.final: GatewayError | None = None
         self.is_open = self.is_dead = False
-        self._parting: GatewayError | None = None  # why the gateway ended the last connection, till the next one says anything else
-        self._unheard: UnheardError | None = None  # what else it may have been, if nothing was ever said to us
-        self._has_heard = False
+        self._parting = Parting()
         self._hello = {name: value for name, value in hello.items() if value}
         self._ids, self._count = ids, 0
         self._out = bytearray()
@@ -130,26 +126,16 @@ class Dialogue:
     def closed(self, why: str, *, is_plain: bool = False) -> None:
         """The connection is gone; `is_plain`: it was one without TLS. What may be said again waits for the next one."""
         self.is_open = self.is_dead = False
-        if is_plain and not self._has_heard:
-            why = f"{why} {UNHEARD}"
-            self._unheard = UnheardError("no-connection", why)
+        why = self._parting.closed(why, is_plain=is_plain)
         for id, one in list(self._asks.items()):
             if self._fates[id] == "moot":
                 self._end(id).hear(Element("ok", {"id": id}))
             elif one.tag == "hello" or self._fates[id] == "lost":
-                self._end(id).fail(self._loss_of(one.tag, why))
-
-    def _loss_of(self, tag: str, why: str) -> GatewayError:
-        """What the one hears whose request went down with the connection: the gateway's own word, if it gave one."""
-        if self._parting is None:
-            kind = NoConnectionError if self._unheard is None else UnheardError
-            return kind("no-connection", f"{why} before it answered <{tag}>; whether that was done is not known")
-        doubt = "" if self._parting.code == NO_PLACE else f"; whether <{tag}> was done is not known"
-        return TurnedAwayError(self._parting.code, self._parting.text + doubt)
+                self._end(id).fail(self._parting.loss_of(one.tag, why))
 
     def reason(self, otherwise: GatewayError) -> GatewayError:
-        """Why there is no connection: the gateway's last word, if that was to end it; that it never said one."""
-        return self._parting or self._unheard or otherwise
+        """Why there is no connection, if more is known than `otherwise`."""
+        return self._parting.reason(otherwise)
 
     def end(self, error: GatewayError) -> None:
         """The conversation is over; everything that waits hears why."""
@@ -174,13 +160,13 @@ class Dialogue:
 
     def _hear(self, message: Element) -> None:
         id = message.get("id", "")
-        self._has_heard, self._unheard = True, None
         if message.tag == "error" and message.get("fatal") == "true":
-            self._parting = error_in(message)
-            if self._parting.code not in PASSING:
-                self.end(self._parting)
+            last = error_in(message)
+            self._parting.heard(last)
+            if last.code not in PASSING:
+                self.end(last)
             return
-        self._parting = None
+        self._parting.heard()
         if id not in self._asks:
             if id in self._given_up:
                 del self._given_up[id]

@@ -114,7 +114,7 @@ class Exchange:
         """Read a document, in whatever thread, if anybody still wants it."""
         if self._queue.is_wanted(hold, ask):
             with contextlib.suppress(Exception):  # it is raised again where the request is answered
-                self._port.prepare_mission(request.op, request.name, request.text)
+                self._port.prepare_mission(request.op, request.name, request.text, request.ports)
         self._prepared.append((hold, ask, stops))
 
     def _answer_prepared(self, now_s: float) -> None:
@@ -135,6 +135,11 @@ class Exchange:
         self._forget_all()
         self._desk.gateway_lost()
         self._audit.step(self._port.now_s())
+
+    def end(self) -> None:
+        """The robot's software ends, and the gateway with it."""
+        self.gateway_lost()
+        self._audit.end(self._port.now_s())
 
     def _forget_all(self) -> None:
         """Nobody waits, nobody watches. Only while nothing is received."""

@@ -91,6 +91,11 @@ class Framer:
             if self._reading.is_complete:
                 yield self._complete()
 
+    @property
+    def unfinished_bytes(self) -> int:
+        """What is kept of a message that has begun."""
+        return len(self._raw)
+
     # between messages --------------------------------------------------------------------------------------------
     def _between(self, data: bytes, at: int) -> int:
         """Take white space, or one byte of what opens a message; the position after it."""

@@ -9,9 +9,10 @@ from pluto_bt.gateway.describe import Described, describe, described
 from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outlets import Outlets
+from pluto_bt.gateway.places import Places
 from pluto_bt.gateway.port import RefusedError
-from pluto_bt.gateway.replies import Description
-from pluto_bt.gateway.requests import AnyRequest, Describe
+from pluto_bt.gateway.replies import Description, Ok
+from pluto_bt.gateway.requests import AnyRequest, Describe, Subscribe, Unsubscribe
 from pluto_bt.gateway.session import Session
 from pluto_bt.gateway.subscriptions import ALIASES, Flow, matches
 from pluto_bt.gateway.wire import Answer, Ask, Batch, Gone, Refused, Up, Watch, Welcome
@@ -36,6 +37,7 @@ class Hub:
         self.robot = welcome.robot
         self.access = welcome.access
         self.topics = welcome.topics
+        self.places = Places(welcome.limits)
         self.batches = 0  # how often the executive has told what has changed
         self._catalogue, self._described = welcome.catalogue, tuple[Described, ...]()
         self._send = send
@@ -79,7 +81,7 @@ class Hub:
             self._asked.discard(session.client)
             self._send(Gone(session.client))
         old = dict(session.subscriptions.flows)
-        session.subscriptions.end()
+        session.end()
         self._leave(old, session)
         self.watch()
 
@@ -114,6 +116,9 @@ class Hub:
         """Look after manners and rates, some times a second; the clients who have something to be sent."""
         touched: dict[int, None] = dict.fromkeys(self._evicted)
         self._evicted.clear()
+        for client in self.places.slow(now_s):
+            self._sessions[client].fail("timeout", f"others wait: expected a long message to be whole within {self.limits.document_s:g} s")
+            touched[client] = None
         self._hand_out(self._channels.late(now_s), touched)
         if any(until_s <= now_s for until_s in self._interest.values()):
             self._interest = {topic: until_s for topic, until_s in self._interest.items() if until_s > now_s}
@@ -160,13 +165,20 @@ class Hub:
             return None
         return self._channels.newest(name)
 
-    def require_topic(self, pattern: str) -> None:
+    def _require_topic(self, pattern: str) -> None:
         """Raises: RefusedError `unknown-topic` if the pattern means no topic of this run."""
         if not any(matches(pattern, topic) for topic in self.topics):
             raise RefusedError("unknown-topic", f'unknown topic "{pattern}"; {did_you_mean(pattern, self.topics) or "<describe/> lists all"}')
 
-    def joined(self, session: Session, old: dict[str, Flow], now_s: float) -> None:
-        """Watch what the session wants now, and give it what is already here; `old` = the flows it had before."""
+    def wish(self, session: Session, request: Subscribe | Unsubscribe, now_s: float) -> None:
+        """Watch what the session wants from now on, and give it what is already here. Raises: RefusedError."""
+        old = dict(session.subscriptions.flows)
+        if isinstance(request, Subscribe):
+            self._require_topic(request.topic)
+            session.subscriptions.add(request, self.topics)
+        elif not session.subscriptions.remove(request.topic):
+            raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
+        session.say(Ok(id=request.id))
         self._leave(old, session)
         self.watch()
         subscriptions = session.subscriptions

@@ -19,6 +19,8 @@ from pluto_bt.runtime.clock import wall_ns
 
 CLIENTS_A_PROCESS = 1 << 32
 BACKLOG_BYTES = 256 * 1024
+MEMORY = {"MALLOC_MMAP_THRESHOLD_": "131072", "MALLOC_TRIM_THRESHOLD_": "131072"}
+"""Long messages are given back to the system when they are done. By itself glibc learns from them to keep such blocks, in pieces, for good."""
 
 
 class Console(NamedTuple):
@@ -110,7 +112,7 @@ class GatewayLink:
         if self._courier is not None:
             self._courier.close()
         self._aside.end()
-        self._exchange.gateway_lost()
+        self._exchange.end()
         for listener in filter(None, (self._listener, self._web)):
             listener.close()
         self._listener = self._web = self._courier = None
@@ -120,7 +122,7 @@ class GatewayLink:
         return self._listener is not None or self._web is not None
 
     def _spawn(self, now_s: float) -> None:
-        ours = self._process.begin(now_s, (self._listener, self._web))
+        ours = self._process.begin(now_s, (self._listener, self._web), environment=MEMORY)
         if ours is None:
             return
         scenery = None if self._console is None else self._console.scenery

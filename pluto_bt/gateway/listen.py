@@ -14,6 +14,8 @@ WEB_PORT = 7580
 EVERYWHERE = ("0.0.0.0", "::")
 BACKLOG = 128
 """Callers who wait to be let in. Whoever calls, shouts and hangs up again and again fills it, and every caller behind him waits for all of that."""
+RECEIVED_BYTES = 16 * 1024
+"""What the kernel takes of each caller before he is read; by itself it takes up to 6 MB."""
 GUARDED = {"--gateway": "the gateway", "--web": "the web console"}
 """Options whose address must be the loopback, unless `access` asks everybody who he is; ssh asks by itself."""
 
@@ -60,6 +62,7 @@ def open_listener(address: Address, access: Access | None = None, option: str = 
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVED_BYTES)
         listener.bind(target)
         listener.listen(BACKLOG)
     except OSError as error:

@@ -15,14 +15,19 @@ class Outstanding:
         self._most, self._most_bytes = limits.outstanding, limits.mission_bytes
         self._sizes_bytes: deque[int] = deque()
 
+    @property
+    def size_bytes(self) -> int:
+        """Of all of them."""
+        return sum(self._sizes_bytes)
+
     def __bool__(self) -> bool:
         return bool(self._sizes_bytes)
 
     def add(self, size_bytes: int) -> None:
         """One more; a single one may have any size. Raises: RefusedError `busy`."""
         sizes_bytes = self._sizes_bytes
-        if len(sizes_bytes) >= self._most or (sizes_bytes and sum(sizes_bytes) + size_bytes > self._most_bytes):
-            text = f"{len(sizes_bytes)} requests ({sum(sizes_bytes)} bytes) of this client wait for the executive; wait for their replies"
+        if len(sizes_bytes) >= self._most or (sizes_bytes and self.size_bytes + size_bytes > self._most_bytes):
+            text = f"{len(sizes_bytes)} requests ({self.size_bytes} bytes) of this client wait for the executive; wait for their replies"
             raise RefusedError("busy", text)
         sizes_bytes.append(size_bytes)
 

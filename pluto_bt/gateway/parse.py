@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from typing import Any
+from xml.etree import ElementTree
 
 import msgspec
 
@@ -16,12 +17,14 @@ from pluto_bt.gateway.requests import ELEMENTS, AnyRequest, Run, Vector
 from pluto_bt.source import did_you_mean
 
 _FROM_CONTENT = {
-    "command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text",), "params": ("values",), "set": ("fields",),
+    "command": ("position", "velocity", "acceleration", "force"), "run": ("ports",), "mission": ("text", "ports"), "params": ("values",),
+    "set": ("fields",),
 }  # fmt: skip
 _ATTRIBUTES = {
     tag: tuple(name for name in kind.__struct_fields__ if name not in _FROM_CONTENT.get(tag, ())) for tag, kind in ELEMENTS.items()
 }
 _COUNTS = {"position": 2, "velocity": 2, "acceleration": 2}
+_GIVEN = re.compile(r"""\s*<p\s+name\s*=\s*("[^"]*"|'[^']*')\s*(?:/>|>([^<]*)</p\s*>)""")
 _INLINE = re.compile(rb"<mission\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>(.*)</mission\s*>", re.DOTALL)
 
 
@@ -69,8 +72,7 @@ def _content(message: Message) -> dict[str, Any]:
     tag, children = message.tag, message.children
     if tag == "mission":
         inline = _INLINE.search(message.raw)
-        text = inline[1].decode() if inline else ""
-        return {"text": text} if text.strip() else {}
+        return _document(inline[1].decode()) if inline else {}
     if message.text.strip():
         raise RefusedError("invalid", f"<{tag}>: expected no text, found {message.text.strip()[:40]!r}")
     if tag in ("params", "set"):
@@ -83,6 +85,22 @@ def _content(message: Message) -> dict[str, Any]:
             raise RefusedError("invalid", f"<{tag}>: expected {expected}, found <{child.tag}>")
         found[child.tag] = _vector(tag, child)
     return found
+
+
+def _document(text: str) -> dict[str, Any]:
+    """The inputs that stand first, and the document behind them."""
+    ports: dict[str, str] = {}
+    at = 0
+    while given := _GIVEN.match(text, at):
+        one = ElementTree.fromstring(given[0].strip())
+        if one.attrib["name"] in ports:
+            raise RefusedError("invalid", f'<mission>: expected each <p> once; look at "{one.attrib["name"]}"')
+        ports[one.attrib["name"]] = one.text or ""
+        at = given.end()
+    if re.match(r"\s*<p[\s/>]", text[at : at + 100]):
+        raise RefusedError("invalid", '<mission>: expected <p name="INPUT">VALUE</p> with a text alone, then the document')
+    document = text[at:]
+    return {"ports": ports} | ({"text": document} if document.strip() else {})
 
 
 def _texts(tag: str, children: Sequence[Child]) -> dict[str, Any]:

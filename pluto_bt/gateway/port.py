@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Literal, NamedTuple, Protocol
 
 import msgspec
@@ -13,6 +14,7 @@ from pluto_bt.gateway.requests import Params
 from pluto_bt.source import PlutoError
 
 MOST_TEXT = 2000
+NO_PORTS: Mapping[str, str] = MappingProxyType({})
 OnLoss = Literal["stop", "pause", "continue"]
 
 
@@ -106,10 +108,10 @@ class RobotPort(Protocol):
     def mission_names(self) -> Sequence[str]:
         """Missions that can be loaded by name."""
 
-    def mission(self, op: str, name: str, text: str, source: str) -> None:
-        """Do `load`, `check`, `start`, `pause`, `resume` or `abort`. Raises: RefusedError, with every fault of a document."""
+    def mission(self, op: str, name: str, text: str, source: str, ports: Mapping[str, str] = NO_PORTS) -> None:
+        """Do `load`, `check` (both with these inputs), `start`, `pause`, `resume` or `abort`. Raises: RefusedError with every fault of a document."""
 
-    def prepare_mission(self, op: str, name: str, text: str) -> None:
+    def prepare_mission(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Read the document of a `load` or `check`, which takes long, so that `mission` with the same words is quick. Thread-safe; never raises."""
 
     def mission_text(self, name: str) -> str:

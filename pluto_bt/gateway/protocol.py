@@ -86,6 +86,8 @@ class Connection:
         if not self.closing:
             self._out += encode(Error(id=id, code=code, text=text, line=line, column=column))
             self.closing = True
+            if self.unfinished_bytes:  # it never will be, and may be large
+                self._framer = None
             self._too_fast = code == "rate-limit"
 
     def close(self) -> None:
@@ -97,6 +99,11 @@ class Connection:
         """Queue one encoded message; nothing follows a fatal error."""
         if not self.closing:
             self._out += line
+
+    @property
+    def unfinished_bytes(self) -> int:
+        """What is kept of a message whose end has not come."""
+        return self._framer.unfinished_bytes if self._framer is not None else 0
 
     @property
     def waiting_bytes(self) -> int:

@@ -42,6 +42,7 @@ class Reading:
         self.open: list[str] = []
         self.is_mission = self.is_complete = False
         self._limits = limits
+        self._names: set[str] = set()  # expat keeps each of them until the message ends, at ten times its length
         self._declared = 0  # name-spaces of the element that is about to begin
         self._child: tuple[str, Attributes] = ("", {})
         self._child_text, self._child_is_leaf = "", True
@@ -60,6 +61,7 @@ class Reading:
     # expat's calls -----------------------------------------------------------------------------------------------
     def _declare(self, prefix: str | None, uri: str | None) -> None:
         self._declared += 1
+        self._names.add(f"xmlns:{prefix}")
 
     def _begin(self, name: str, attributes: Attributes) -> None:
         """Raises: RestrictedError beyond a bound."""
@@ -73,6 +75,8 @@ class Reading:
         else:
             self._child_is_leaf = False
         count, self._declared = len(attributes) + self._declared, 0
+        self._names.add(name)
+        self._names.update(attributes)
         self._require_bounds(depth, count)
 
     def _require_bounds(self, depth: int, attributes: int) -> None:
@@ -81,6 +85,8 @@ class Reading:
             raise RestrictedError("too-deep", f"expected at most {limit} elements inside each other")
         if attributes > self._limits.attributes:
             raise RestrictedError("too-large", f"expected at most {self._limits.attributes} attributes, found {attributes}")
+        if len(self._names) > self._limits.names:
+            raise RestrictedError("too-large", f"expected at most {self._limits.names} different names in a message")
 
     def _end(self, name: str) -> None:
         self.open.pop()

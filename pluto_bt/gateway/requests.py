@@ -136,11 +136,12 @@ class Release(Request, frozen=True, kw_only=True):
 
 
 class MissionOp(Request, frozen=True, kw_only=True):
-    """The mission: load, check, start, pause and so on; a document of one's own stands inside as `<root …>`."""
+    """The mission: load, check, start, pause and so on; a document of one's own stands inside as `<root …>`, inputs before it as `<p name="…">`."""
 
     op: Literal["load", "check", "start", "pause", "resume", "abort", "list", "fetch", "state"]
     name: str = ""
     text: str = ""
+    ports: dict[str, str] = {}
 
 
 class ShowTree(Request, frozen=True, kw_only=True):

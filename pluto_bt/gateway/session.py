@@ -9,12 +9,14 @@ from pluto_bt.gateway import requests
 from pluto_bt.gateway.access import SCOPES, Key, may, scope_of, shown_scopes
 from pluto_bt.gateway.encode import encode
 from pluto_bt.gateway.framing import Message
+from pluto_bt.gateway.manners import Manners
 from pluto_bt.gateway.newest import Newest
 from pluto_bt.gateway.outstanding import Outstanding
 from pluto_bt.gateway.parse import parse
+from pluto_bt.gateway.places import Place
 from pluto_bt.gateway.port import RefusedError
 from pluto_bt.gateway.protocol import STOPS, Connection
-from pluto_bt.gateway.replies import CAPABILITIES, AnyReply, Error, Hello, Ok, Pong, Value, with_id
+from pluto_bt.gateway.replies import CAPABILITIES, AnyReply, Error, Hello, Pong, Value, with_id
 from pluto_bt.gateway.requests import AnyRequest, Estop, Stop, acts
 from pluto_bt.gateway.stops import Stops
 from pluto_bt.gateway.subscriptions import ALIASES, Subscriptions
@@ -35,6 +37,7 @@ class Session:
     Attributes:
         peer: the client's address, for the audit log; the server sets it.
         name, session: what he said in hello; with a token, the name that belongs to it.
+        place: of his long message; while that `is_held_up`, give us no more of it.
     """
 
     def __init__(self, client: int, hub: Hub, now_s: float, *, is_reserve: bool = False) -> None:
@@ -42,7 +45,6 @@ class Session:
         self.peer = self.name = self.session = ""
         self.subscriptions = Subscriptions(client)
         self._hub = hub
-        self._limits = hub.limits
         self._connection = Connection(hub.limits)
         self.queue = self._connection.queue  # replies that wait for `to_send`
         self._stops = Stops()
@@ -50,12 +52,11 @@ class Session:
         self._is_known = not hub.access.keys  # by a token, or by a certificate
         self._greeted = False
         self._answered_at = hub.batches  # how much the executive had told when it last answered: that is out of date
-        self._is_reserve = is_reserve
-        self._has_stopped = False
+        self._is_reserve, self._has_stopped = is_reserve, False
         self._outstanding = Outstanding(hub.limits)
+        self.place = Place(hub.places, client)
         self._taken_bytes = 0  # of the message that is being taken
-        self._began_s = now_s
-        self._heard_s = now_s
+        self._manners = Manners(hub.limits, now_s)
 
     @property
     def is_waiting(self) -> bool:
@@ -85,10 +86,14 @@ class Session:
 
     def taking(self, data: bytes, now_s: float) -> Iterator[None]:
         """Bytes from the client, a message each time, so that others may have their turn between two of them."""
-        self._heard_s = now_s
+        self._manners.heard(now_s)
         for message in self._connection.feed(data, now_s):
             self._take(message, now_s)
             yield
+        self._mind_place(now_s)
+
+    def _mind_place(self, now_s: float) -> None:
+        self.place.mind(self._connection.unfinished_bytes, self._outstanding.size_bytes, now_s)
 
     def _take(self, message: Message, now_s: float) -> None:
         if self.closing and message.tag not in STOPS:
@@ -139,23 +144,13 @@ class Session:
             case requests.Describe():
                 self.say(hub.describe(request))
             case requests.Subscribe() | requests.Unsubscribe():
-                self._wish(request, now_s)
+                hub.wish(self, request, now_s)
             case requests.Get():
                 self._get(request, now_s)
             case requests.Bye():
                 self._connection.close()
             case _:
                 self._ask(request)
-
-    def _wish(self, request: requests.Subscribe | requests.Unsubscribe, now_s: float) -> None:
-        old = dict(self.subscriptions.flows)
-        if isinstance(request, requests.Subscribe):
-            self._hub.require_topic(request.topic)
-            self.subscriptions.add(request, self._hub.topics)
-        elif not self.subscriptions.remove(request.topic):
-            raise RefusedError("invalid", f'expected a topic or pattern that was subscribed to, found "{request.topic}"')
-        self.say(Ok(id=request.id))
-        self._hub.joined(self, old, now_s)
 
     def _hello(self, request: requests.SayHello, now_s: float) -> None:
         if self._greeted:
@@ -204,6 +199,13 @@ class Session:
     def fail(self, code: str, text: str, id: str = "") -> None:
         """A fatal error."""
         self._connection.fail(code, text, id=id)
+        self.place.leave()
+
+    def end(self) -> None:
+        """The connection is gone. What it kept goes at once: somebody may still know this object for a while."""
+        self._connection.close()
+        self.subscriptions.end()
+        self.place.end()
 
     def answer(self, answer: Answer, now_s: float) -> None:
         """The executive's word to one of our requests."""
@@ -218,6 +220,7 @@ class Session:
             return
         if answer.lane == "direct":
             self._outstanding.answered()
+            self._mind_place(now_s)
         if isinstance(reply, Value):
             newest = Newest(ALIASES.get(reply.topic, reply.topic), reply.seq, reply.age_s, now_s, reply.payload)
             self._connection.send(newest.line(now_s, shown=reply.topic, id=reply.id))
@@ -227,8 +230,9 @@ class Session:
     def events(self, events: list[Newest], now_s: float) -> bool:
         """Events are lines like values, but none is dropped. True if this client wants them."""
         flow = self.subscriptions.flows.get("events")
-        for event in events if flow is not None else ():
-            self._connection.send(event.line(now_s, id=flow.wish.id if flow is not None else ""))
+        if flow is not None:
+            for event in events:
+                self._connection.send(event.line(now_s, id=flow.wish.id))
         return flow is not None
 
     def to_send(self, now_s: float, room_bytes: int) -> bytes:
@@ -241,10 +245,6 @@ class Session:
 
     def tick(self, now_s: float, unread_bytes: int) -> None:
         """Watch the client's manners: silence, and replies that he does not read."""
-        limits = self._limits
-        if unread_bytes > limits.backlog_bytes:
-            self.fail("slow-consumer", f"{unread_bytes} bytes of replies wait unread; expected at most {limits.backlog_bytes}")
-        elif (not self._is_known or self.is_stranger) and now_s - self._began_s >= limits.hello_s:
-            self.fail("timeout", f"expected hello within {limits.hello_s:g} s")
-        elif now_s - self._heard_s >= limits.idle_s:
-            self.fail("timeout", f"no byte came for {limits.idle_s:g} s; send <ping/> now and then")
+        is_unknown = not self._is_known or self.is_stranger
+        if fault := self._manners.fault(now_s, unread_bytes, is_unknown=is_unknown, is_held_up=self.place.is_held_up):
+            self.fail(*fault)

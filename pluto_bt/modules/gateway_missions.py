@@ -11,7 +11,7 @@ import msgspec
 
 from pluto_bt.blackboard.messages import MissionState
 from pluto_bt.commands.files import SHIPPED, package_root
-from pluto_bt.gateway.port import RefusedError
+from pluto_bt.gateway.port import NO_PORTS, RefusedError
 from pluto_bt.modules.context import Context
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP
 from pluto_bt.skills.reasons import STOPPED
@@ -23,6 +23,9 @@ FAULTS_TOLD = 50
 OPS_OF_STATE = {"pause": RUNNING, "resume": PAUSED}
 _INCLUDE = re.compile(r"<\s*include\b")
 _NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_.-]*")
+Words = tuple[str, str, str, tuple[tuple[str, str], ...]]
+"""Of a request: op, name, text, inputs."""
+GIVE = 'give it by <p name="NAME">VALUE</p> before the document; in the shell by run MISSION NAME=VALUE'
 PREPARED = 64
 """Missions that were read and wait to be fetched."""
 
@@ -33,7 +36,7 @@ class GatewayMissions:
     def __init__(self, context: Context) -> None:
         self._system, self._board, self._latch = context.system, context.board, context.latch
         self._loaded: Mission | None = None
-        self._prepared: dict[tuple[str, str, str], Mission | RefusedError] = {}  # by op, name and text
+        self._prepared: dict[Words, Mission | RefusedError] = {}
 
     def state(self) -> MissionState:
         """The mission, with what has been ordered already: who pauses it may go on at once, not only after the executive's next step."""
@@ -56,11 +59,11 @@ class GatewayMissions:
 
         return dump(activity.mission, "xml")
 
-    def act(self, op: str, name: str, text: str) -> None:
+    def act(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Load, check, start, pause, resume, abort. Raises: RefusedError; a bad load leaves all as it was."""
         core = self._system.executive.core
         if op in ("load", "check"):
-            loaded = self._read(op, name, text)
+            loaded = self._read(op, name, text, ports)
             self._loaded = loaded if op == "load" else self._loaded
         elif op == "start":
             self.require_idle("abort it first")
@@ -81,21 +84,21 @@ class GatewayMissions:
         else:
             raise RefusedError("invalid", f'mission op="{op}" is not offered')
 
-    def prepare(self, op: str, name: str, text: str) -> None:
+    def prepare(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Read a document in whatever thread; the next `act` with the same words takes what came of it."""
         try:
-            mission = self._named(name, text)
-            self._prepared[op, name, text] = mission
+            read: Mission | RefusedError = self._named(name, text, ports)
         except RefusedError as refusal:
-            self._prepared[op, name, text] = refusal
+            read = refusal
+        self._prepared[op, name, text, tuple(ports.items())] = read
         for words in list(self._prepared)[:-PREPARED]:  # whoever asked for these never fetched them
             self._prepared.pop(words, None)
 
-    def _read(self, op: str, name: str, text: str) -> Mission | None:
+    def _read(self, op: str, name: str, text: str, ports: Mapping[str, str]) -> Mission | None:
         """The mission, None if it was only to be checked. Raises: RefusedError."""
-        prepared = self._prepared.pop((op, name, text), None)
+        prepared = self._prepared.pop((op, name, text, tuple(ports.items())), None)
         if prepared is None:
-            return self._named(name, text)
+            return self._named(name, text, ports)
         if isinstance(prepared, RefusedError):
             raise prepared
         return prepared if op == "load" else None
@@ -121,19 +124,19 @@ class GatewayMissions:
         if hold is not None:
             raise RefusedError("estopped", f"emergency stop ({hold.text}); release it first")
 
-    def _load(self, text: str) -> Mission:
-        mission = self._system.options.load_checked(text)
+    def _load(self, text: str, ports: Mapping[str, str] = NO_PORTS) -> Mission:
+        mission = self._system.options.load_checked(text, ports)
         mission.attach(self._system.robot)
         return mission
 
-    def _named(self, name: str, text: str) -> Mission:
+    def _named(self, name: str, text: str, ports: Mapping[str, str]) -> Mission:
         """The mission that came inline, else the shipped one of that name. A client names no other file."""
         if text and not text.lstrip().startswith("<"):
             raise RefusedError("bad-mission", f"expected a document <root>…</root>, found {text.strip()[:40]!r}")
         if _INCLUDE.search(text):
             raise RefusedError("bad-mission", "a mission sent inline includes no files: expected one whole document, found <include>")
         try:
-            return self._load(text.lstrip() or str(self._path(name)))
+            return self._load(text.lstrip() or str(self._path(name)), ports)
         except MissionError as error:
             raise _refusal(error, {}, "bad-mission", with_place=True) from None
 
@@ -150,7 +153,8 @@ def _refusal(error: MissionError, codes: Mapping[str, str], otherwise: str, *, w
     """All faults of a document, each with its line and column in it (line 1 = that of `<root>`)."""
     refusals = []
     for fault in error.faults:
-        words = (fault.message, fault.expected and f"expected {fault.expected}", fault.found and f"found {fault.found}", fault.mend)
+        mend = GIVE if fault.code == "missing-input" else fault.mend
+        words = (fault.message, fault.expected and f"expected {fault.expected}", fault.found and f"found {fault.found}", mend)
         place = (fault.line, fault.column) if with_place else (0, 0)
         refusals.append(RefusedError(codes.get(fault.code, otherwise), "; ".join(filter(None, words)), *place))
     first, *more = refusals[:FAULTS_TOLD]

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState, ModulesState
-from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.gateway.port import NO_PORTS, Newest, RefusedError, RunState
 from pluto_bt.gateway.replies import Cause, Item, ParamsState
 from pluto_bt.gateway.requests import Params
 from pluto_bt.gateway.setting import message_from
@@ -157,15 +157,15 @@ class GatewayPort:
         """The document of a shipped mission, or of the one at work."""
         return self._missions.text(name)
 
-    def mission(self, op: str, name: str, text: str, source: str) -> None:
+    def mission(self, op: str, name: str, text: str, source: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Load, check, start, pause, resume, abort."""
         if op not in ("load", "check"):
             self._touch(mission=op)
-        self._missions.act(op, name, text)
+        self._missions.act(op, name, text, ports)
 
-    def prepare_mission(self, op: str, name: str, text: str) -> None:
+    def prepare_mission(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         """Read a document beside the work of the link."""
-        self._missions.prepare(op, name, text)
+        self._missions.prepare(op, name, text, ports)
 
     def tree_text(self, format: str) -> str:
         """The tree drawn."""

@@ -88,12 +88,8 @@ class Part:
             return
         began_ns = wall_ns()
         try:
-            while self._handed:
-                self._handed.popleft()()
-            if self.fault == "raise":
-                raise InjectedError(f'the world script lets module "{self.module.name}" raise')
-            if self._has_failed:
-                self._restart(now_ns)
+            if self._handed or self._has_failed or self.fault:
+                self._prepare(now_ns)
             self.component.step(now_ns / NS)
             self.stepped_ns = now_ns
         except Exception as error:
@@ -105,6 +101,15 @@ class Part:
             self._note_slow(took_ns)
         if self.slow_ns:
             self.resume_at_ns = now_ns + self.slow_ns
+
+    def _prepare(self, now_ns: int) -> None:
+        """What comes before a step now and then: what others want done, a failure that a world script asked for, a new start."""
+        while self._handed:
+            self._handed.popleft()()
+        if self.fault == "raise":
+            raise InjectedError(f'the world script lets module "{self.module.name}" raise')
+        if self._has_failed:
+            self._restart(now_ns)
 
     def _obey(self, now_ns: int) -> bool:
         """Start or stop as ordered; False if the component raised. One that cannot start stays stopped, with the error beside it."""

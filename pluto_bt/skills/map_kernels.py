@@ -57,22 +57,34 @@ def mark_level(
                 touched[i, j] = number
                 evidence[i, j] = min(MOST, evidence[i, j] + HIT)
         last_x, last_y, has_last = hit_x, hit_y, True
+    flat_evidence, flat_covered, flat_touched = evidence.reshape(-1), covered.reshape(-1), touched.reshape(-1)
+    places = np.zeros(max(0, int(look / SAMPLE)) + 1, dtype=np.int32)
     for k in range(ranges.shape[0]):
         r = ranges[k]
         if not r > 0.0:
             continue
         if 0 < k < ranges.shape[0] - 1:
             r = min(r, max(ranges[k - 1], ranges[k + 1]) + join)
-        c, s_ = math.cos(bearings[k]), math.sin(bearings[k])
-        for m in range(int((min(r, look) - 1.0) / SAMPLE)):
-            i, j = math.floor(x + m * SAMPLE * c), math.floor(y + m * SAMPLE * s_)
-            if not (0 <= i < size and 0 <= j < size):
+        count = max(0, int((min(r, look) - 1.0) / SAMPLE))
+        cells_along(places[:count], x, y, math.cos(bearings[k]), math.sin(bearings[k]), size)
+        for m in range(count):
+            place = places[m]
+            if place < 0:
                 break
             if m * SAMPLE < cover:
-                covered[i, j] = 1
-            if touched[i, j] != number:
-                touched[i, j] = number
-                evidence[i, j] = max(LEAST, evidence[i, j] - MISS)
+                flat_covered[place] = 1
+            if flat_touched[place] != number:
+                flat_touched[place] = number
+                flat_evidence[place] = max(LEAST, flat_evidence[place] - MISS)
+
+
+@inline_kernel
+def cells_along(places: Counts, x: float, y: float, c: float, s: float, size: int) -> None:
+    """Fill in the cells at the samples of a beam from (x, y), numbered row by row; -1 = beyond the edge. Without a branch, so it is vectorised."""
+    for m in range(places.shape[0]):
+        i, j = math.floor(x + m * SAMPLE * c), math.floor(y + m * SAMPLE * s)
+        is_inside = (i >= 0) & (i < size) & (j >= 0) & (j < size)
+        places[m] = i * size + j if is_inside else -1
 
 
 @kernel
@@ -125,14 +137,26 @@ def changes(
     Returns: the smallest window that holds all that changed, i0, i1, j0, j1; with i0 >= i1 if nothing did.
     """
     first_i, last_i, first_j, last_j = evidence.shape[0], 0, evidence.shape[1], 0
+    oldest = np.float32(oldest_s)
     for i in range(i0, i1):
+        if not has_changed(evidence[i, j0:j1], low_s[i, j0:j1], oldest, stands[i, j0:j1]):
+            continue
+        first_i, last_i = min(first_i, i), max(last_i, i + 1)
         for j in range(j0, j1):
-            is_there = evidence[i, j] > 0 or low_s[i, j] > oldest_s
+            is_there = evidence[i, j] > 0 or low_s[i, j] > oldest
             if is_there != (stands[i, j] != 0):
                 stands[i, j] = 1 if is_there else 0
-                first_i, last_i = min(first_i, i), max(last_i, i + 1)
                 first_j, last_j = min(first_j, j), max(last_j, j + 1)
     return first_i, last_i, first_j, last_j
+
+
+@inline_kernel
+def has_changed(evidence: Bytes, low_s: Floats, oldest_s: np.float32, stands: Bytes) -> bool:
+    """Whether one cell of a row, all of them (n,), is not as `stands` has it. Without a branch in the loop, so that it is vectorised."""
+    differences = 0
+    for j in range(evidence.shape[0]):
+        differences |= ((evidence[j] > 0) | (low_s[j] > oldest_s)) ^ (stands[j] != 0)
+    return differences != 0
 
 
 @kernel
@@ -211,10 +235,33 @@ def all_free(evidence: Bytes, points: Array, cell_m: float, i0: int, j0: int) ->
 def under_places(grid: Floats, points: Array, origin: tuple[float, float, float], cell_m: float) -> Array:
     """The cells under points (n, 2) in metres, as lengths, of a grid that lies as `maps.raster.Frame` says; 0 beyond its edge."""
     out = np.zeros(points.shape[0])
-    c, s, size_m = math.cos(origin[2]), math.sin(origin[2]), np.float32(cell_m)
+    c, s = math.cos(origin[2]), math.sin(origin[2])
     for k in range(points.shape[0]):
-        dx, dy = points[k, 0] - origin[0], points[k, 1] - origin[1]
-        row, column = (c * dy - s * dx) / cell_m, (c * dx + s * dy) / cell_m
-        if 0.0 <= row < grid.shape[0] and 0.0 <= column < grid.shape[1]:
-            out[k] = grid[int(row), int(column)] * size_m
+        out[k] = length_at(grid, points[k, 0] - origin[0], points[k, 1] - origin[1], c, s, cell_m)
     return out
+
+
+@inline_kernel
+def length_at(grid: Floats, dx_m: float, dy_m: float, c: float, s: float, cell_m: float) -> float:
+    """The cell of a grid under a place, as a length; (c, s) is the direction in which its columns count. 0 beyond its edge."""
+    row, column = (c * dy_m - s * dx_m) / cell_m, (c * dx_m + s * dy_m) / cell_m
+    if 0.0 <= row < grid.shape[0] and 0.0 <= column < grid.shape[1]:
+        return float(grid[int(row), int(column)] * np.float32(cell_m))
+    return 0.0
+
+
+@kernel
+def draw_tight(way: Array, room_m: Array, rounds: int, pull: float, grid: Floats, origin: tuple[float, float, float], cell_m: float) -> None:
+    """Draw each point of a way (n, 2) to the middle of its neighbours, by the share `pull` in each round, but never to where it has less room
+    than `room_m` (n,) says. The grid is that of `under_places`; the ends stay.
+    """
+    c, s, count = math.cos(origin[2]), math.sin(origin[2]), way.shape[0]
+    for _ in range(rounds):
+        old_x, old_y = way[0, 0], way[0, 1]  # of the point before, as it was before this round
+        for k in range(1, count - 1):
+            x, y = way[k, 0], way[k, 1]
+            new_x = x + pull * (0.5 * (old_x + way[k + 1, 0]) - x)
+            new_y = y + pull * (0.5 * (old_y + way[k + 1, 1]) - y)
+            if length_at(grid, new_x - origin[0], new_y - origin[1], c, s, cell_m) >= room_m[k]:
+                way[k, 0], way[k, 1] = new_x, new_y
+            old_x, old_y = x, y

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable
 
 import numpy as np
 
+from pluto_bt.maps.kernel import kernel
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.plan_parameters import PlanParameters
 
@@ -23,8 +25,8 @@ class PathFollowing:
 
     def __init__(self, points: Array, rooms_m: Callable[[Array], Array] | None, least_m: float, parameters: PlanParameters) -> None:
         """`rooms_m` tells how far points of the path are from what stands, if anybody knows; `least_m` of it the robot itself needs."""
-        self._points, self._parameters = points, parameters
-        self._at_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))))
+        self._points, self._parameters = np.array(points), parameters  # a copy: of one kind for the kernels, whatever the path's points are
+        self._at_m: list[float] = [0.0, *np.cumsum(np.hypot(*np.diff(points, axis=0).T)).tolist()]
         spare = np.full(len(points), 0.3) if rooms_m is None else rooms_m(points) - least_m
         self._cut_m = np.clip(CUT_SHARE * spare, LEAST_CUT_M, MOST_CUT_M)
 
@@ -32,8 +34,8 @@ class PathFollowing:
         """Go on from where the robot is."""
         away_m = np.hypot(self._points[:, 0] - robot[0], self._points[:, 1] - robot[1])
         first = int(np.flatnonzero(away_m <= away_m.min() + BACK_M)[0])
-        self.place = first + first_nearest(away_m[first:])
-        self._best_m, self._best_s = float(self._at_m[self.place]), now_s
+        self.place = first + nearest_ahead(self._points[first:], robot[0], robot[1])
+        self._best_m, self._best_s = self._at_m[self.place], now_s
 
     def wait(self, now_s: float) -> None:
         """Time in which the robot had to stand for another reason does not count as being stuck."""
@@ -52,7 +54,7 @@ class PathFollowing:
     @property
     def left_m(self) -> float:
         """What is left of the path."""
-        return float(self._at_m[-1] - self._at_m[self.place])
+        return self._at_m[-1] - self._at_m[self.place]
 
     def stuck_s(self, now_s: float) -> float:
         """How long there has been no headway."""
@@ -60,8 +62,7 @@ class PathFollowing:
 
     def stretch(self, length_m: float) -> Array:
         """The next points (k, 2) of the path."""
-        last = int(np.searchsorted(self._at_m, self._at_m[self.place] + length_m, side="right"))
-        return self._points[self.place : last]
+        return self._points[self.place : bisect_right(self._at_m, self._at_m[self.place] + length_m)]
 
     def off_m(self, robot: Planar) -> float:
         """How far the robot is from the path: positive on its left."""
@@ -79,31 +80,50 @@ class PathFollowing:
         return math.atan2(step[1], step[0])
 
     def _advance(self, robot: Planar, now_s: float) -> None:
-        stretch = self.stretch(SEARCH_M)
-        self.place += first_nearest(np.hypot(stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]))
-        come_m = float(self._at_m[self.place])
+        self.place += nearest_ahead(self.stretch(SEARCH_M), robot[0], robot[1])
+        come_m = self._at_m[self.place]
         if come_m > self._best_m + CAME_ON_M:
             self._best_m, self._best_s = come_m, now_s
 
     def _ahead(self, robot: Planar) -> tuple[float, float]:
         for share in SHARES:
             stretch = self.stretch(max(NEAREST_M, share * self._parameters.ahead_m))
-            last = stretch[-1]
-            if self._is_near(robot, stretch, last):
+            if can_cut(stretch, self._cut_m[self.place : self.place + len(stretch)], robot[0], robot[1]):
                 break
-        return float(last[0]), float(last[1])
-
-    def _is_near(self, robot: Planar, stretch: Array, last: Array) -> bool:
-        """True if the straight way to `last` leaves no point between farther aside than its room allows, or than the robot is off by now."""
-        dx, dy = last[0] - robot[0], last[1] - robot[1]
-        x, y = stretch[:, 0] - robot[0], stretch[:, 1] - robot[1]
-        share = np.clip((dx * x + dy * y) / max(dx * dx + dy * dy, 1e-12), 0.0, 1.0)  # of the way there, where it is nearest to each point
-        aside = np.hypot(x - share * dx, y - share * dy)
-        off_m = math.hypot(float(x[0]), float(y[0]))
-        return bool((aside <= np.maximum(self._cut_m[self.place : self.place + len(stretch)], off_m)).all())
+        return float(stretch[-1, 0]), float(stretch[-1, 1])
 
 
-def first_nearest(away_m: Array) -> int:
-    """Where a row of distances is least, before it has grown again by `BACK_M`."""
-    grown = np.flatnonzero(away_m > np.minimum.accumulate(away_m) + BACK_M)
-    return int(np.argmin(away_m[: grown[0]] if len(grown) else away_m))
+@kernel
+def nearest_ahead(points: Array, x_m: float, y_m: float) -> int:
+    """Which of the points (n, 2) of a way is nearest to a place, before it leads away again by `BACK_M`."""
+    best, least_m = 0, np.inf
+    for k in range(points.shape[0]):
+        away_m = math.sqrt((points[k, 0] - x_m) ** 2 + (points[k, 1] - y_m) ** 2)
+        if away_m < least_m:
+            best, least_m = k, away_m
+        elif away_m > least_m + BACK_M:
+            break
+    return best
+
+
+@kernel
+def can_cut(points: Array, cut_m: Array, x_m: float, y_m: float) -> bool:
+    """True if the straight way from a place to the last of the points (n, 2) leaves none of them farther aside than its `cut_m` (n,) allows, or
+    than the first one is away by now.
+    """
+    last = points.shape[0] - 1
+    dx, dy = points[last, 0] - x_m, points[last, 1] - y_m
+    off_m = math.sqrt((points[0, 0] - x_m) ** 2 + (points[0, 1] - y_m) ** 2)
+    for k in range(points.shape[0]):
+        x, y = points[k, 0] - x_m, points[k, 1] - y_m
+        share = min(max((dx * x + dy * y) / max(dx * dx + dy * dy, 1e-12), 0.0), 1.0)  # of the way there, where it is nearest to this point
+        if math.sqrt((x - share * dx) ** 2 + (y - share * dy) ** 2) > max(cut_m[k], off_m):
+            return False
+    return True
+
+
+def warm() -> None:
+    """Use the kernels once, so that no later use waits for their compilation."""
+    at = np.zeros((1, 2))
+    nearest_ahead(at, 0.0, 0.0)
+    can_cut(at, np.zeros(1), 0.0, 0.0)

@@ -10,7 +10,7 @@ import numpy as np
 from pluto_bt.maps.raster import OCCUPIED, Frame, drawn, frame_of
 from pluto_bt.maps.world import World
 from pluto_bt.skills.local_map import Cell
-from pluto_bt.skills.map_kernels import Floats, clearances, under_places
+from pluto_bt.skills.map_kernels import Floats, clearances, draw_tight, under_places
 from pluto_bt.skills.outline import Array
 
 KNOWN_M = 0.3  # what is seen so near to what the map shows is the same thing
@@ -80,4 +80,5 @@ class PlanMap:
 
 def warm() -> None:
     """Compile what asks a map, so that no plan waits for it; all else the local map has compiled already."""
-    under_places(np.zeros((1, 1), dtype=np.float32), np.zeros((1, 2)), (0.0, 0.0, 0.0), 1.0)
+    grid, at, origin = np.zeros((1, 1), dtype=np.float32), np.zeros((1, 2)), (0.0, 0.0, 0.0)
+    draw_tight(at, under_places(grid, at, origin, 1.0), 1, 0.5, grid, origin, 1.0)

@@ -83,7 +83,7 @@ class Planner:
         """The same way without the corners of the grid."""
         wide_m = self._half * self.map.frame.cell_m
         straight = pulled(resampled(rough, STEP_M), self.map.clearances_m, wide_m)
-        return smoothed(resampled(straight, STEP_M), self.map.clearances_m, wide_m)
+        return smoothed(resampled(straight, STEP_M), self.map, wide_m)
 
     def tight_place(self, points: Array) -> Point | None:
         """The first place of a way (n, 2) where the corners of a robot that drives along it come too near to something, its start and

@@ -58,29 +58,46 @@ def see_beams(
     A beam clears only as far as its two neighbours reach too: one lost beam opens no hole in a wall. So every second beam is enough.
     """
     n = ranges_m.shape[0]
+    flat_seen, flat_level = seen.reshape(-1), stamps[LEVEL].reshape(-1)
+    places = np.zeros(max(0, int(most_m / (0.7 * CELL_M))) + 1, dtype=np.int32)
     for i in range(0, n, 2):
-        free_m = ranges_m[i]
-        for j in (max(i - 1, 0), min(i + 1, n - 1)):
-            if not ranges_m[j] >= free_m:  # also NaN
-                free_m = ranges_m[j]
-        if not free_m > 0.0:
+        right_m, left_m = ranges_m[max(i - 1, 0)], ranges_m[min(i + 1, n - 1)]
+        if not (ranges_m[i] > 0.0 and right_m > 0.0 and left_m > 0.0):  # also NaN
             continue
+        free_m = min(ranges_m[i], right_m, left_m)
         free_m = min(free_m - BEAM_SLACK_M, most_m)
+        if free_m < 0.0:
+            continue
+        count = int(free_m / (0.7 * CELL_M)) + 1
         c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
-        for k in range(int(free_m / (0.7 * CELL_M)) + 1):
-            along_m = min(0.7 * CELL_M * k, free_m)
-            column, row = cell_of(x_m + c * along_m, corner_x_m), cell_of(y_m + s * along_m, corner_y_m)
-            if along_m < 0.0 or not 0 <= column < seen.shape[1] or not 0 <= row < seen.shape[0]:
+        cells_along(places[:count], x_m, y_m, c, s, free_m, corner_x_m, corner_y_m, seen.shape[0], seen.shape[1])
+        for k in range(count):
+            if places[k] < 0:
                 break
-            seen[row, column] = stamp_s
-            is_older = stamps[LEVEL, row, column] > NEVER and stamps[LEVEL, row, column] < stamp_s
-            if is_older and math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
-                stamps[LEVEL, row, column] = NEVER
+            flat_seen[places[k]] = stamp_s
+            level_s = flat_level[places[k]]
+            if level_s > NEVER and level_s < stamp_s:
+                row, column = places[k] // seen.shape[1], places[k] % seen.shape[1]
+                if math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
+                    flat_level[places[k]] = NEVER
     for i in range(n):
         range_m = ranges_m[i]
         if range_m > 0.0 and range_m < most_m and believed[i] != 0.0:
             x, y = x_m + range_m * math.cos(first_rad + i * step_rad), y_m + range_m * math.sin(first_rad + i * step_rad)
             put(stamps, spots, LEVEL, corner_x_m, corner_y_m, x, y, x_m, y_m, stamp_s)
+
+
+@inline_kernel
+def cells_along(
+    places: NDArray[np.int32], x_m: float, y_m: float, c: float, s: float, free_m: float, corner_x_m: float, corner_y_m: float, rows: int,
+    columns: int,
+) -> None:  # fmt: skip
+    """Fill in the cells along a beam from (x, y) up to `free_m`, numbered row by row; -1 = beyond the edge. Without a branch, so it is vectorised."""
+    for k in range(places.shape[0]):
+        along_m = min(0.7 * CELL_M * k, free_m)
+        column, row = math.floor((x_m + c * along_m - corner_x_m) / CELL_M), math.floor((y_m + s * along_m - corner_y_m) / CELL_M)
+        is_inside = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
+        places[k] = row * columns + column if is_inside else -1
 
 
 @inline_kernel
@@ -93,6 +110,15 @@ def put(
         is_new = stamps[layer, row, column] != stamp_s
         if is_new or math.hypot(x - from_x, y - from_y) < math.hypot(spots[layer, row, column, X] - from_x, spots[layer, row, column, Y] - from_y):
             stamps[layer, row, column], spots[layer, row, column, X], spots[layer, row, column, Y] = stamp_s, x, y
+
+
+@kernel
+def put_all(
+    stamps: Array, spots: Array, layer: int, corner_x_m: float, corner_y_m: float, points: Array, from_x: float, from_y: float, stamps_s: Array
+) -> None:
+    """Note points (n, 2), each with its own stamp (n,), as `put` does."""
+    for i in range(points.shape[0]):
+        put(stamps, spots, layer, corner_x_m, corner_y_m, points[i, X], points[i, Y], from_x, from_y, stamps_s[i])
 
 
 @kernel
@@ -143,21 +169,23 @@ def hear_cones(
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
             row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
-            on_arc, was_free = 0, 0
+            on_arc, was_free, near_m = 0, 0, max(0.0, far_m - 2.0 * CELL_M)
             for row in range(row_0, row_1):
+                dy = corner_y_m + (row + 0.5) * CELL_M - y_m
+                if clears == 1:
+                    span = slice(column_0, column_1)
+                    clear_cells(seen[row, span], stamps[LOW, row, span], stamps[LEVEL, row, span], heard[ANYHOW, row, span],
+                                heard[INSIDE, row, span], corner_x_m, x_m, column_0, dy, c, s, opening, clear_m, stamp_s)  # fmt: skip
+                    continue
                 for column in range(column_0, column_1):
-                    dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
-                    ahead_m, aside_m, away_m = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(dx * dx + dy * dy)
+                    dx = corner_x_m + (column + 0.5) * CELL_M - x_m
+                    square = dx * dx + dy * dy
+                    if square > far_m * far_m or square < near_m * near_m:
+                        continue  # surely not on the arc
+                    ahead_m, aside_m, away_m = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(square)
                     if ahead_m <= 0.0 or aside_m > ahead_m * opening:
                         continue
-                    if clears == 1:
-                        if away_m < clear_m:
-                            clear_cell(seen, stamps, row, column, stamp_s)
-                            is_sure = heard[ANYHOW, row, column] > stamp_s - TWICE_S  # one lost echo proves nothing
-                            heard[ANYHOW, row, column] = stamp_s
-                            if is_sure and aside_m < ahead_m * opening - CELL_M:  # what stands on the edge is heard now and then
-                                heard[INSIDE, row, column] = stamp_s
-                    elif abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
+                    if abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
                         on_arc, was_free = on_arc + 1, was_free + (heard[INSIDE, row, column] > stamp_s - LATELY_S)
                         put_s = stamp_s - fleeting_s if heard[ANYHOW, row, column] > stamp_s - LATELY_S else stamp_s
@@ -168,12 +196,26 @@ def hear_cones(
 
 
 @inline_kernel
-def clear_cell(seen: Array, stamps: Array, row: int, column: int, stamp_s: float) -> None:
-    """The sonar hears through a cell: what was heard there is gone, and so is what the laser saw there long ago."""
-    seen[row, column] = stamp_s
-    stamps[LOW, row, column] = NEVER
-    if stamps[LEVEL, row, column] < stamp_s - FRESH_S:
-        stamps[LEVEL, row, column] = NEVER
+def clear_cells(
+    seen: Array, low: Array, level: Array, anyhow: Array, inside: Array, corner_x_m: float, x_m: float, first: int, dy_m: float, c: float,
+    s: float, opening: float, clear_m: float, stamp_s: float,
+) -> None:  # fmt: skip
+    """The sonar hears through the cells of a row that lie in a cone: what was heard there is gone, and so is what the laser saw there long ago.
+
+    All arrays (n,), of the columns from `first` on. x_m: of the apex, from which the row lies `dy_m` aside; c, s: the cone's axis.
+    Every cell is written, most of them as they were: without a branch the loop is vectorised.
+    """
+    for k in range(seen.shape[0]):
+        dx = corner_x_m + (first + k + 0.5) * CELL_M - x_m
+        ahead_m, aside_m = c * dx + s * dy_m, abs(c * dy_m - s * dx)
+        is_in = (ahead_m > 0.0) & (aside_m <= ahead_m * opening) & (math.sqrt(dx * dx + dy_m * dy_m) < clear_m)
+        is_sure = anyhow[k] > stamp_s - TWICE_S  # one lost echo proves nothing
+        is_well_in = is_in & is_sure & (aside_m < ahead_m * opening - CELL_M)  # what stands on the edge is heard now and then
+        seen[k] = stamp_s if is_in else seen[k]
+        low[k] = NEVER if is_in else low[k]
+        level[k] = NEVER if is_in & (level[k] < stamp_s - FRESH_S) else level[k]
+        anyhow[k] = stamp_s if is_in else anyhow[k]
+        inside[k] = stamp_s if is_well_in else inside[k]
 
 
 @inline_kernel
@@ -186,6 +228,8 @@ def is_explained(
     column_0, column_1 = cells_of(x_m, c * reach_m, abs(s) * reach_m * opening, corner_x_m, stamps.shape[2])
     row_0, row_1 = cells_of(y_m, s * reach_m, abs(c) * reach_m * opening, corner_y_m, stamps.shape[1])
     for row in range(row_0, row_1):
+        if not has_any(stamps[layer, row, column_0:column_1]):
+            continue
         for column in range(column_0, column_1):
             if stamps[layer, row, column] > NEVER:
                 dx, dy = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
@@ -193,6 +237,15 @@ def is_explained(
                 if dx * dx + dy * dy < reach_m * reach_m and aside_m < ahead_m * opening + CELL_M:
                     return True
     return False
+
+
+@inline_kernel
+def has_any(stamps: Array) -> bool:
+    """Whether anything stands in a row of cells (n,): without a branch in the loop, so that it is vectorised."""
+    found = False
+    for k in range(stamps.shape[0]):
+        found = found | (stamps[k] > NEVER)
+    return found
 
 
 @kernel
@@ -211,16 +264,21 @@ def stand(
     count = 0
     c, s = math.cos(theta_rad), math.sin(theta_rad)
     near_m = reach_m + grown_m + CELL_M
+    column_0, column_1 = max(0, cell_of(x_m - window_m, corner_x_m)), min(seen.shape[1], cell_of(x_m + window_m, corner_x_m) + 1)
+    near_0 = max(column_0, cell_of(x_m - near_m, corner_x_m))
+    near_1, outside = max(near_0, min(column_1, cell_of(x_m + near_m, corner_x_m) + 1)), np.zeros(seen.shape[1])
     for row in range(max(0, cell_of(y_m - window_m, corner_y_m)), min(seen.shape[0], cell_of(y_m + window_m, corner_y_m) + 1)):
-        for column in range(max(0, cell_of(x_m - window_m, corner_x_m)), min(seen.shape[1], cell_of(x_m + window_m, corner_x_m) + 1)):
-            dx, dy = corner_x_m + (column + 0.5) * CELL_M - x_m, corner_y_m + (row + 0.5) * CELL_M - y_m
-            if dx * dx + dy * dy < near_m * near_m and outside_m(planes, c * dx + s * dy, c * dy - s * dx) < grown_m - CELL_M:
-                seen[row, column] = stamp_s
+        dy = corner_y_m + (row + 0.5) * CELL_M - y_m
+        if dy * dy < near_m * near_m:
+            stand_on(seen[row, near_0:near_1], corner_x_m, x_m, near_0, dy, c, s, planes, near_m, grown_m - CELL_M, stamp_s, outside)
+        if not (has_any(stamps[LEVEL, row, column_0:column_1]) or has_any(stamps[LOW, row, column_0:column_1])):
+            continue
+        for column in range(column_0, column_1):
             for layer in range(2):
                 if stamps[layer, row, column] == NEVER:
                     continue
-                dx, dy = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
-                px, py = c * dx + s * dy, c * dy - s * dx
+                away_x, away_y = spots[layer, row, column, X] - x_m, spots[layer, row, column, Y] - y_m
+                px, py = c * away_x + s * away_y, c * away_y - s * away_x
                 is_old = stamps[layer, row, column] < hits_since_s or (layer == LOW and is_level_near(stamps, row, column))
                 if is_old or outside_m(planes, px, py) < INSIDE_M:
                     stamps[layer, row, column] = NEVER
@@ -228,6 +286,26 @@ def stand(
                     out[count, 0], out[count, 1], out[count, 2] = px, py, layer
                     count += 1
     return count
+
+
+@inline_kernel
+def stand_on(
+    seen: Array, corner_x_m: float, x_m: float, first: int, dy_m: float, c: float, s: float, planes: Array, near_m: float, least_m: float,
+    stamp_s: float, outside: Array,
+) -> None:  # fmt: skip
+    """Mark those cells of a row (n,), of the columns from `first` on, that are nearer than `near_m` to the robot's middle and less than `least_m`
+    outside of its outline. The row lies `dy_m` aside from the middle, x_m; `outside` (n or more,) is to work on. Plane by plane, so that the loops
+    are vectorised.
+    """
+    for p in range(planes.shape[0]):
+        nx, ny, at_m = planes[p, 0], planes[p, 1], planes[p, 2]
+        for k in range(seen.shape[0]):
+            dx = corner_x_m + (first + k + 0.5) * CELL_M - x_m
+            beyond_m = nx * (c * dx + s * dy_m) + ny * (c * dy_m - s * dx) - at_m
+            outside[k] = beyond_m if p == 0 or beyond_m > outside[k] else outside[k]
+    for k in range(seen.shape[0]):
+        dx = corner_x_m + (first + k + 0.5) * CELL_M - x_m
+        seen[k] = stamp_s if (dx * dx + dy_m * dy_m < near_m * near_m) & (outside[k] < least_m) else seen[k]
 
 
 @inline_kernel

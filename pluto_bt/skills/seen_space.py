@@ -14,7 +14,7 @@ from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.lone_beams import believed_ends
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, Counts, hear_cones, place_cones, put, see_beams, stand
+from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, Counts, hear_cones, place_cones, put_all, see_beams, stand
 
 ROLL_CELLS = 12  # so far the robot leaves the middle before the cells are moved
 MOST_POINTS = 4000
@@ -94,8 +94,7 @@ class SeenSpace:
         points = np.column_stack((laser[0] + c * x - s * y, laser[1] + s * x + c * y))
         is_body = (np.hypot(points[:, None, 0] - people[:, 0], points[:, None, 1] - people[:, 1]) < people[:, 2]).any(axis=1)
         stamps_s = scan.stamp_s - np.where(is_body, self._fleeting_s, 0.0)
-        for (px, py), stamp_s in zip(points.tolist(), stamps_s.tolist(), strict=True):
-            put(self.stamps, self.spots, LOW, *self.corner_m, px, py, laser[0], laser[1], stamp_s)
+        put_all(self.stamps, self.spots, LOW, *self.corner_m, points, laser[0], laser[1], stamps_s)
 
     def add_echoes(self, axes: Array, leaves_m: Array, ranges_m: Array, sonar: Sonar, robot: Planar, stamp_s: float) -> Counts:
         """Take a round of the ring.
@@ -166,3 +165,8 @@ def _shifted(cells: Array, columns: int, rows: int) -> Array:
         from_rows, from_columns = slice(max(0, rows), min(n, n + rows)), slice(max(0, columns), min(n, n + columns))
         out[to_rows, to_columns] = cells[from_rows, from_columns]
     return out
+
+
+def warm() -> None:
+    """Use the kernel once that only a scan which looks down needs."""
+    put_all(np.full((2, 1, 1), NEVER), np.zeros((2, 1, 1, 2)), LOW, 0.0, 0.0, np.zeros((1, 2)), 0.0, 0.0, np.zeros(1))

@@ -7,7 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from pluto_bt.skills.map_kernels import draw_tight
 from pluto_bt.skills.outline import Array
+from pluto_bt.skills.plan_map import PlanMap
 
 Clearances = Callable[[Array], Array]  # (n, 2) points → (n,) metres to what stands
 LOOKS = (1.0, 0.75, 0.5, 0.35, 0.25, 0.15, 0.1)  # shares of the longest short cut that are tried
@@ -49,14 +51,9 @@ def _has_room(a: Array, b: Array, room_m: float, clearances_m: Clearances) -> bo
     return bool((clearances_m(line) >= room_m).all())
 
 
-def smoothed(points: Array, clearances_m: Clearances, wide_m: float) -> Array:
+def smoothed(points: Array, plan_map: PlanMap, wide_m: float) -> Array:
     """Each point drawn to the middle of its neighbours, again and again, but never nearer to what stands than it was, below `wide_m`."""
-    if len(points) < 3:
-        return points
-    way = points.copy()
-    room = np.minimum(clearances_m(way), wide_m)[1:-1]
-    for _ in range(ROUNDS):
-        new = way[1:-1] + PULL * (0.5 * (way[:-2] + way[2:]) - way[1:-1])
-        may = clearances_m(new) >= room
-        way[1:-1][may] = new[may]
+    way = np.array(points)
+    frame = plan_map.frame
+    draw_tight(way, np.minimum(plan_map.clearances_m(way), wide_m), ROUNDS, PULL, plan_map.clearance, frame.origin, frame.cell_m)
     return way

@@ -12,7 +12,6 @@ from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.skills.avoid_parameters import AvoidParameters
@@ -20,6 +19,7 @@ from pluto_bt.skills.heading import GAIN_PER_S, SLOW_ANGLE_RAD
 from pluto_bt.skills.limits import Limits, clamp
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.steering import CLEAR_M
+from pluto_bt.skills.wall_kernels import bend_speed, seen_from, standing, way_lengths
 from pluto_bt.skills.wall_parameters import WallParameters
 from pluto_bt.skills.wall_path import Ball, WallPath, Wish, find_wall, foot_of, plan
 
@@ -113,17 +113,14 @@ class WallFollow:
         if now_s - self._seen_s > LOST_S:
             self._end = Along(0.0, 0.0, WallStatus.LOST, "the wall that was followed is not there any more")
             return self._end
-        along = self._drive(_seen_from(self._path.points, self._at, mirrored))
+        along = self._drive(seen_from(self._path.points, self._at, mirrored))
         return self._judged(along, now_s, odometry)
 
     # ---------------------------------------------------------------- looking
 
     def _standing(self, points: Array) -> Array:
         """(n, 2) mirrored, of what does not move. Without ghosts of beams that were dazzled: what would stand within the robot, or all alone."""
-        stands = points[(points[:, 3] == 0.0) & (points[:, 4] == 0.0), :2]
-        planes = self._outline.planes
-        is_outside = (stands @ planes[:, :2].T > planes[:, 2]).any(axis=1)
-        return np.ascontiguousarray(stands[is_outside & ~_is_alone(stands)] * (1.0, self._side))
+        return standing(points, self._outline.planes, self._side, ALONE_M, ALONE_WITHIN_M)
 
     def _look(self, stands: Array, robot: Planar, now_s: float) -> None:
         """Work out the path anew, from where the ball was last or else from the nearest wall. Where neither leads along the wall that is
@@ -144,8 +141,8 @@ class WallFollow:
         foot = foot_of(path)
         off_m = math.hypot(*path[foot, :2])
         self._is_there = self._is_there or off_m < NEAR_M
-        way_m = np.concatenate(([0.0], np.cumsum(np.hypot(*np.diff(path[foot:, :2], axis=0).T))))
-        speed_mps = self._speed_mps(path[foot:, 2], way_m)
+        way_m = way_lengths(path, foot)
+        speed_mps = self._speed_mps(path, foot, way_m)
         ahead_m = max(SHORTEST_M, min(LONGEST_M, PURSUIT_S * speed_mps)) + 0.5 * off_m
         aim = foot + int(np.searchsorted(way_m, ahead_m))
         x, y = path[min(aim, len(path) - 1), :2].tolist()
@@ -157,18 +154,14 @@ class WallFollow:
         text = AT_WALL if self._is_there else TO_WALL
         return Along(min(self.limits.speed_mps, speed_mps / share), self._side * turn_rad, WallStatus.FOLLOWING, text)
 
-    def _speed_mps(self, headings_rad: Array, way_m: Array) -> float:
+    def _speed_mps(self, path: Array, foot: int, way_m: Array) -> float:
         """As fast as the bends ahead allow, with time to brake before them."""
         if len(way_m) < 3:
             return CREEP_MPS
-        later = np.minimum(np.searchsorted(way_m, way_m + BEND_M), len(way_m) - 1)
-        bends = np.abs(np.remainder(headings_rad[later] - headings_rad + math.pi, math.tau) - math.pi)
-        per_m = bends / BEND_M
-        most_mps = TURN_SHARE * self.limits.turn_rate_radps / np.maximum(per_m, 1e-3)
         brake_mps2 = COMFORT_SHARE * self.limits.deceleration_mps2
-        allowed = np.sqrt(most_mps**2 + 2.0 * brake_mps2 * way_m)
+        allowed_mps = bend_speed(path, foot, way_m, BEND_M, TURN_SHARE * self.limits.turn_rate_radps, brake_mps2)
         to_end_mps = math.sqrt(2.0 * brake_mps2 * float(way_m[-1]))
-        return float(max(CREEP_MPS, min(self.limits.speed_mps, allowed.min(initial=math.inf), to_end_mps)))
+        return max(CREEP_MPS, min(self.limits.speed_mps, allowed_mps, to_end_mps))
 
     def _judged(self, along: Along, now_s: float, odometry: Planar) -> Along:
         """Stuck without progress."""
@@ -181,34 +174,7 @@ class WallFollow:
         return along
 
 
-def _is_alone(points: Array) -> NDArray[np.bool_]:
-    """Which near points (n, 2) have no other beside them."""
-    squares = np.floor(points / ALONE_M).astype(np.intp)
-    if not len(points):
-        return np.zeros(0, dtype=bool)
-    low = squares.min(axis=0) - 1
-    i, j = (squares - low).T
-    count = np.zeros((int(i.max()) + 2, int(j.max()) + 2), dtype=np.intp)
-    np.add.at(count, (i, j), 1)
-    rows = count[:-2] + count[1:-1] + count[2:]
-    around = rows[:, :-2] + rows[:, 1:-1] + rows[:, 2:]
-    alone: NDArray[np.bool_] = (around[i - 1, j - 1] < 2) & (np.hypot(points[:, 0], points[:, 1]) < ALONE_WITHIN_M)
-    return alone
-
-
-def _seen_from(path: Array, before: Planar, now: Planar) -> Array:
-    """A path given in the robot frame `before`, in that of now."""
-    back = math.cos(before[2] - now[2]), math.sin(before[2] - now[2])
-    dx, dy = before[0] - now[0], before[1] - now[1]
-    c, s = math.cos(now[2]), math.sin(now[2])
-    out = path.copy()
-    out[:, 0] = c * dx + s * dy + back[0] * path[:, 0] - back[1] * path[:, 1]
-    out[:, 1] = c * dy - s * dx + back[1] * path[:, 0] + back[0] * path[:, 1]
-    out[:, 2] += before[2] - now[2]
-    return out
-
-
 def _ball_from(ball: Ball, before: Planar, now: Planar) -> Ball:
-    places = _seen_from(np.array([[ball.x_m, ball.y_m, 0.0], [ball.touched_x_m, ball.touched_y_m, 0.0]]), before, now)
+    places = seen_from(np.array([[ball.x_m, ball.y_m, 0.0], [ball.touched_x_m, ball.touched_y_m, 0.0]]), before, now)
     (x, y), (touched_x, touched_y) = places[:, :2].tolist()
     return Ball(x, y, touched_x, touched_y, ball.radius_m)

@@ -16,9 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from pluto_bt.skills import wall_kernels
 from pluto_bt.skills.camera_lean import leaned
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.rolling import roll
+from pluto_bt.skills.wall_kernels import keeps_away, nearest_of
 
 STEP_M = 0.06
 BEHIND_M = 0.9  # the first ball begins so far behind the robot …
@@ -79,6 +81,7 @@ class WallPath(NamedTuple):
 def warm() -> None:
     """Use the kernel once, so that no later use waits for its compilation."""
     roll(np.zeros((1, 2)), 0.0, 1.0, 1.0, STEP_M, 1)
+    wall_kernels.warm()
 
 
 def find_wall(points: Array, wish: Wish) -> Ball | None:
@@ -122,7 +125,7 @@ def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
     path = _leaning(path, points, wish)
     foot = foot_of(path)
     distance_m = min(wish.distance_m, ball.radius_m + low * (_full_m(ball.radius_m, wish) - ball.radius_m))
-    return WallPath(path[:, :3], foot, distance_m, _next_ball(rows, path[foot, 3:], ball.radius_m))
+    return WallPath(np.ascontiguousarray(path[:, :3]), foot, distance_m, _next_ball(rows, path[foot, 3:], ball.radius_m))
 
 
 def _rolled(points: Array, ball: Ball, wish: Wish) -> tuple[Ball, Array] | None:
@@ -197,15 +200,13 @@ def _leaning(path: Array, points: Array, wish: Wish) -> Array:
 
 def foot_of(path: Array) -> int:
     """The point of a path that is nearest to the robot; of two that are equally near, the one that comes first."""
-    return int(np.argmin(np.hypot(path[:, 0], path[:, 1]) + LATER_M_PER_M * STEP_M * np.arange(len(path))))
+    return nearest_of(path, LATER_M_PER_M * STEP_M)
 
 
 def _is_clear(path: Array, points: Array, least_m: float) -> bool:
     """True if nothing stands nearer to the next metres of the path than the robot needs."""
     foot = foot_of(path)
-    ahead = path[foot : foot + int(AHEAD_M / STEP_M) : 3]
-    gaps = np.hypot(ahead[:, :1] - points[:, 0], ahead[:, 1:2] - points[:, 1])
-    return bool(gaps.min() >= least_m)
+    return keeps_away(path, foot, foot + int(AHEAD_M / STEP_M), 3, points, least_m)
 
 
 def _next_ball(rows: Array, touched: Array, radius_m: float) -> Ball:

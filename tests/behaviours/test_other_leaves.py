@@ -126,3 +126,16 @@ def test_fields_are_those_of_the_message_and_nothing_of_python() -> None:
     for bad in ("position.7", "position.x", "__class__", "flags.0", ""):
         with pytest.raises((AttributeError, IndexError, ValueError, TypeError)):
             field_of(state, bad)
+
+
+@pytest.mark.parametrize("leaf", ['<GoTo name="out" goal="{place}" reason="{why}"/>', '<MakeTurn name="out" angle_deg="{place}" reason="{why}"/>'])
+def test_a_leaf_whose_entry_nothing_wrote_on_this_way_fails_with_node_port_and_cure(stage: Any, leaf: str) -> None:
+    mission = stage.load(f"<Sequence><AlwaysSuccess _onFailure=\"place:='1;2'\"/>{leaf}</Sequence>")
+    assert stage.tick(mission) == "FAILURE" and mission.blackboard["why"] == "no-input"
+    port = "goal" if "goal" in leaf else "angle_deg"
+    why = "entry 'place' has no value; write it on every way that leads here, or once at the beginning"
+    told = f'no-input: port "{port}" of "out" has no value: {why}'
+    assert [node.feedback_message for node in mission.root.iterate() if node.name == "out"] == [told]
+    assert stage.robot.commands in ([], [0])  # nothing moves
+    mission.blackboard["place"] = "1;2" if port == "goal" else "90"
+    assert stage.tick(mission) == "RUNNING", "it works once the entry is there"

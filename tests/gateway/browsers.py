@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import pytest
 
+from pluto_bt.runtime.clock import wall_ns
+
+PATIENCE_MS = 60_000
 DESK, PHONE, ACROSS = (1440, 900), (390, 844), (844, 390)
 
 
@@ -31,7 +34,7 @@ class Screen:
     def __init__(self, browser: Any, url: str, size: tuple[int, int] = DESK) -> None:
         self.context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=size == PHONE)
         self.page = self.context.new_page()
-        self.page.set_default_timeout(20_000)
+        self.page.set_default_timeout(PATIENCE_MS)
         self.complaints: list[str] = []
         self.page.on("console", lambda message: self.complaints.append(message.text) if message.type == "error" else None)
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -47,6 +50,13 @@ class Screen:
             "([selector, words]) => words.every((one) => document.querySelector(selector)?.textContent.includes(one))",
             arg=[selector, list(words)],
         )
+
+    def until(self, is_so: Callable[[], bool]) -> None:
+        """Until the robot has what the page sent; a page that sends nothing ends the test by its time."""
+        until_ns = wall_ns() + PATIENCE_MS * 1_000_000
+        while not is_so():
+            assert wall_ns() < until_ns, "the page did not do it"
+            self.page.wait_for_timeout(5)
 
     def click(self, selector: str) -> None:
         self.page.click(selector)

@@ -19,7 +19,7 @@ from pluto_bt.runtime.clock import NS, MonotonicClock, wait, wall_ns
 
 from .robot import FakeRobot
 
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 
 
 def whole(token: str) -> Access:
@@ -56,8 +56,8 @@ class Running:
         """Until the executive knows that every client is gone, and what that entails is done."""
         exchange, pause = self.link._exchange, threading.Event()
         until_ns = wall_ns() + round(PATIENCE_S * NS)
-        while exchange._watched or exchange._desk._leases.held is not None:
-            assert wall_ns() < until_ns, f"watched: {exchange._watched}, lease: {exchange._desk._leases.held}"
+        while exchange._watched or exchange._desk._helm.held is not None:
+            assert wall_ns() < until_ns, f"watched: {exchange._watched}, lease: {exchange._desk._helm.held}"
             wait(pause, 0.001)
 
     def pump(self) -> None:
@@ -66,7 +66,7 @@ class Running:
 
     def client(self, backoff: Backoff | None = None, **given: str) -> Client:
         """A client who takes a lost line for the end, unless told when to try again."""
-        return Client(*self.address, timeout_s=20.0, backoff=backoff, **given)
+        return Client(*self.address, timeout_s=PATIENCE_S, backoff=backoff, **given)
 
     def renew(self) -> FakeRobot:
         """The robot as new, for the next test of a file that shares this gateway; its runs stay known, for one may still be watched, and its

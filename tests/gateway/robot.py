@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from pluto_bt.blackboard import messages as m
 from pluto_bt.blackboard.topics import TOPICS
-from pluto_bt.gateway.port import Newest, RefusedError, RunState
+from pluto_bt.gateway.port import NO_PORTS, Newest, RefusedError, RunState
 from pluto_bt.gateway.replies import Cause, Item, Param, ParamsState
 from pluto_bt.gateway.requests import Params
 from pluto_bt.gateway.setting import message_from
@@ -29,6 +29,7 @@ class FakeRobot:
         self.on_prepare = lambda text: None
         self.rev = 1
         self.items: list[Item] = []
+        self.documents: dict[str, str] = {}
 
     def write(self, topic: str, value: m.Message) -> None:
         old = self.values.get(topic)
@@ -93,10 +94,10 @@ class FakeRobot:
     def mission_names(self) -> Sequence[str]:
         return ("patrol", "trip2")
 
-    def mission(self, op: str, name: str, text: str, source: str) -> None:
-        self.did.append(("mission", op, name, text))
+    def mission(self, op: str, name: str, text: str, source: str, ports: Mapping[str, str] = NO_PORTS) -> None:
+        self.did.append(("mission", op, name, text, *([dict(ports)] if ports else [])))
 
-    def prepare_mission(self, op: str, name: str, text: str) -> None:
+    def prepare_mission(self, op: str, name: str, text: str, ports: Mapping[str, str] = NO_PORTS) -> None:
         self.on_prepare(text)
 
     def tree_text(self, format: str) -> str:
@@ -120,7 +121,7 @@ class FakeRobot:
         self.did.append(("module", name, op))
 
     def mission_text(self, name: str) -> str:
-        return f"<root>{name}</root>"
+        return self.documents.get(name, f"<root>{name}</root>")
 
     def params(self, request: Params, source: str) -> ParamsState:
         if request.op == "set" and request.rev not in (None, self.rev):

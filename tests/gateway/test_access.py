@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import math
 import shutil
 import socket
 import ssl
@@ -11,6 +12,8 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from pluto_bt.gateway.access import Access, read_access
 from pluto_bt.gateway.audit import Audit
@@ -20,7 +23,10 @@ from pluto_bt.gateway.limits import Limits
 from pluto_bt.gateway.link import GatewayLink
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.local import LocalGateway
-from pluto_bt.gateway.wire import Refused
+from pluto_bt.gateway.replies import Ok
+from pluto_bt.gateway.requests import MissionOp
+from pluto_bt.gateway.tally import Tally
+from pluto_bt.gateway.wire import Ask, Refused
 from pluto_bt.source import Faults
 
 from .conftest import Running
@@ -37,7 +43,7 @@ scopes = ["watch"]
 token = "0123456789abcdef-chief"
 scopes = ["admin"]
 """
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 def people_file(folder: Path, text: str = PEOPLE) -> Path:
@@ -169,6 +175,37 @@ def test_old_audit_logs_move_on_and_long_contents_are_counted_only(tmp_path: Pat
     kept = {path.name: json.loads(path.read_text(encoding="utf-8")) for path in tmp_path.iterdir()}
     assert {name: line["client"] for name, line in kept.items()} == {"audit.jsonl": 6} | {f"audit.jsonl.{n}": 6 - n for n in (1, 2, 3, 4)}
     assert kept["audit.jsonl"]["content"] == {"bytes": 1011}
+
+
+def test_a_flood_of_refusals_is_summed_and_what_was_done_stays_readable(tmp_path: Path) -> None:
+    audit = Audit(tmp_path / "audit.jsonl")
+    done = Ask(500, "", "anna", MissionOp(op="pause"), "10.0.0.9:1")
+    for second in range(60):
+        for number in range(640):
+            client = number % 64 if second < 30 else second * 640 + number  # in the end each of them calls anew
+            audit.note_refused(Refused(client, "", "eve", f"10.0.0.7:{client}", "run", ("no-lease", "busy")[second % 2], "no"), float(second))
+        audit.note(done, Ok(), float(second))
+        audit.step(float(second))
+    audit.note(Ask(500, "", "anna", MissionOp(op="resume"), "10.0.0.9:1"), Ok(), 60.0)
+    audit.note(done, Ok(), 61.0)
+    audit.end(62.0)
+    lines = [json.loads(line) for line in (tmp_path / "audit.jsonl").read_text(encoding="utf-8").splitlines()]
+    assert len(lines) < 1_000
+    deeds = [(line["content"].get("op"), line.get("times")) for line in lines if line["outcome"] == "ok"]
+    assert deeds == [("pause", None), (None, 30), ("pause", None), (None, 28), ("resume", None), ("pause", None)]
+    refused = [line for line in lines if line["outcome"] != "ok"]
+    assert sum(line.get("times", 1) for line in refused) == 60 * 640, "none is missing in the sums"
+    assert {line["since_s"] for line in refused if "times" in line} >= {0.0, 1.0}
+
+
+@given(st.lists(st.tuples(st.integers(0, 3), st.sampled_from(["a", "b", "no"]), st.floats(0.0, 20.0)), max_size=60))
+def test_first_ones_and_sums_come_to_all_that_was_said(said: list[tuple[int, str, float]]) -> None:
+    tally, now_s, told = Tally(), 0.0, 0
+    for client, kind, later_s in said:
+        now_s += later_s
+        sums = tally.due(now_s) + (tally.deed(kind) if kind != "no" else [])
+        told += sum(one["times"] for one in sums) + tally.is_first((client, kind), ("", kind), {}, now_s)
+    assert told + sum(one["times"] for one in tally.due(math.inf)) == len(said)
 
 
 def test_a_tls_file_that_cannot_be_read_is_named(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from pluto_bt.runtime.clock import NS, wall_ns
 
 from .conftest import Running
 
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 def talk(running: Running, story: Callable[[AsyncClient], Awaitable[None]], **given: str) -> None:

@@ -18,15 +18,17 @@ from pluto_bt.bench.attacker import CROWDS, STREAMS, begin
 from pluto_bt.bench.resident import resident_mb
 from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.client import GatewayError
+from pluto_bt.gateway.places import LONG_BYTES
 from pluto_bt.gateway.replies import Item
 from pluto_bt.runtime.clock import wait, wall_ns
 
 from .conftest import Running
 
-ATTACK_S, PING_EVERY_S, WAIT_S = 0.3, 0.006, 20.0
+ATTACK_S, PING_EVERY_S, WAIT_S = 0.3, 0.006, 60.0
 GROWTH_MB = 10.0
 CODE = {
     "attribute": "too-large", "text": "too-large", "name": "too-large", "comment": "too-large", "white-space": "too-large", "mission": "too-large",
+    "mission-names": "too-large",
     "attributes": "too-large", "bomb": "restricted-xml", "xxe": "restricted-xml", "inner-doctype": "restricted-xml",
     "undefined-entity": "restricted-xml", "instruction": "restricted-xml", "xinclude": "not-well-formed", "depth": "too-deep",
     "mission-depth": "too-deep", "utf-16": "bad-encoding", "nul": "not-well-formed", "bad-utf-8": "bad-encoding", "cut-utf-8": "bad-encoding",
@@ -52,7 +54,8 @@ class Target(Running):
         self.polite = self.client(name="operator")
 
     def under(self, attack: str) -> dict[str, Any]:
-        """What the attacker was told; the polite client asks all the while, and is answered."""
+        """What the attacker was told; the polite client asks all the while, and is answered. Who waited before him with long messages is gone."""
+        self.polite.request("ping", t="x" * 2 * LONG_BYTES)
         with begin(attack, self.address.port, ATTACK_S) as process:
             pause = threading.Event()
             while process.poll() is None:
@@ -76,7 +79,7 @@ def target() -> Iterator[Target]:
     one.end()
 
 
-@pytest.mark.parametrize("attack", [*STREAMS, *CROWDS, "storm"])
+@pytest.mark.parametrize("attack", [*STREAMS, *CROWDS, "storm", "documents"])
 def test_an_attack_hurts_nobody_but_himself(target: Target, attack: str) -> None:
     before_mb, deeds = target.rss_mb(), len(target.robot.did)
     told = target.under(attack)

@@ -55,7 +55,7 @@ def live() -> Iterator[Live]:
     yield one
     assert one.process.stdin is not None
     one.process.stdin.close()
-    one.process.wait(30.0)
+    one.process.wait(60.0)
 
 
 def until(client: Client, state: str) -> None:

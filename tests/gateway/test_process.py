@@ -27,7 +27,7 @@ from pluto_bt.source import InputError
 from .conftest import Running
 from .robot import FakeRobot
 
-WAIT_S = 20.0
+WAIT_S = 60.0
 
 
 def talk(address: Address, data: bytes) -> bytes:

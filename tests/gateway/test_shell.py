@@ -245,13 +245,13 @@ class Mission:
     """A robot that runs what it is told to: `order` is what the shell sent."""
 
     def __init__(self, running: Running, end: str) -> None:
-        self.orders: list[tuple[str, str, str]] = []
+        self.orders: list[tuple[object, ...]] = []
         self._running, self._end, self._run = running, end, next(RUNS)
         running.robot.mission_now = m.MissionState(0.0, "before", self._run, "succeeded")
         running.robot.mission = self.order  # type: ignore[method-assign]
 
-    def order(self, op: str, name: str, text: str, source: str) -> None:
-        self.orders.append((op, name, text))
+    def order(self, op: str, name: str, text: str, source: str, ports: Mapping[str, str]) -> None:
+        self.orders.append((op, name, text, *([dict(ports)] if ports else [])))
         if op == "start":
             running = self._running
             running.robot.mission_now = m.MissionState(running.robot.time_s, "m", self._run + 1, "running")
@@ -274,7 +274,9 @@ def test_run_gives_inputs_and_files_and_can_let_go(running: Running, tmp_path: P
     assert say(running, "run", str(file), "&") == (0, f"{file} runs\n")
     assert mission.orders[0] == ("load", "mine.xml", file.read_text().partition("?>")[2])
     assert say(running, "run", str(file), "what=a<b", "&")[0] == 0
-    assert '<SubTree what="a&lt;b" ID="Mine"' in mission.orders[2][2] and 'main_tree_to_execute="said in the shell"' in mission.orders[2][2]
+    assert mission.orders[2] == (*mission.orders[0], {"what": "a<b"})
+    assert say(running, "run", "patrol", "goals=1,2;3,4", "&")[0] == 0
+    assert mission.orders[4] == ("load", "patrol.xml", "", {"goals": "1,2;3,4"})
     file.write_text("<root>\n <oops></root>")
     code, text = say(running, "run", str(file))
     assert code == 1 and f"{file}:2:" in text
@@ -292,10 +294,10 @@ def test_ctrl_c_stops_the_robot_then_the_command_ends(running: Running) -> None:
     running.robot.run_node = run_node  # type: ignore[method-assign]
     running.robot.stop = lambda source: stopped.set()  # type: ignore[method-assign]
     shell = subprocess.Popen([sys.executable, "-m", "pluto_bt", "shell", str(running.address), "goto", "3", "4"], stdout=subprocess.PIPE, text=True)
-    assert begun.wait(20.0)
+    assert begun.wait(60.0)
     shell.send_signal(signal.SIGINT)
-    assert stopped.wait(20.0)
-    assert shell.wait(10.0) == 130 and "stopped" in shell.communicate()[0]
+    assert stopped.wait(60.0)
+    assert shell.wait(60.0) == 130 and "stopped" in shell.communicate()[0]
 
 
 def test_a_script_stops_at_its_first_failure_and_says_where(running: Running, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,7 +31,7 @@ from pluto_bt.gateway.ssh_keys import check_keys, host_key
 from pluto_bt.gateway.ssh_link import SshLink, SshRequest
 
 needs_tmux = pytest.mark.skipif(shutil.which("tmux") is None, reason="tmux is not installed")
-PATIENCE_S = 20.0
+PATIENCE_S = 60.0
 
 
 class Door:

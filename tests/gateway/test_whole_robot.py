@@ -218,3 +218,25 @@ def test_no_hostile_request_moves_the_robot(tmp_path: Path) -> None:
     assert told == HOSTILE
     assert set(talk.speeds(lambda t: 2.9 < t < 8.0)) <= {0.0}
     assert "root:" not in str([answer.text for answer in talk.heard])
+
+
+def test_a_mission_that_needs_inputs_is_started_with_them(tmp_path: Path) -> None:
+    given = '<p name="goals">3,0;5,0</p> <p name="rounds">1</p>'
+    mine = """<root BTCPP_format="4"><BehaviorTree ID="Main"><Say text="{what}"/></BehaviorTree>
+<TreeNodesModel><SubTree ID="Main"><input_port name="what"/></SubTree></TreeNodesModel></root>"""
+    talk = Talk(tmp_path, {
+        0.5: '<mission id="bare" op="load" name="patrol.xml"/><mission id="odd" op="check" name="patrol.xml"><p name="gaols">3,0</p></mission>',
+        0.6: f'<mission id="wrong" op="load" name="patrol.xml">{given.replace("5,0", "five")}</mission>',
+        0.7: '<mission id="twice" op="load" name="patrol.xml"><p name="a">1</p><p name="a">2</p></mission>',
+        0.8: '<mission id="deep" op="load" name="patrol.xml"><p name="a"><b/></p></mission>',
+        0.9: f"<mission id='mine' op='check'><p name='what'>a &lt; b</p>\n{mine}</mission><mission id='not' op='check'>{mine}</mission>",
+        1.0: f'<mission id="load" op="load" name="patrol.xml">{given}</mission><mission op="pause"/><mission id="start" op="start"/>',
+    }, x=30.0)  # fmt: skip
+    codes = {id: (talk.told(id)[0].get("code"), talk.told(id)[0].text) for id in ("bare", "odd", "wrong", "twice", "deep", "not")}
+    assert {id: code for id, (code, _) in codes.items()} == {
+        "bare": "bad-mission", "odd": "bad-mission", "wrong": "bad-mission", "twice": "invalid", "deep": "invalid", "not": "bad-mission",
+    }  # fmt: skip
+    assert 'give it by <p name="NAME">VALUE</p>' in codes["bare"][1] and "did you mean \"goals\"?" in codes["odd"][1]
+    assert [talk.told(id)[0].tag for id in ("mine", "load", "start")] == ["ok"] * 3
+    state = talk.system.executive.core.mission
+    assert state is not None and (state.state, talk.result.final_pose[0]) == ("succeeded", pytest.approx(5.0, abs=0.5))

@@ -22,7 +22,7 @@ from pluto_bt.runner import Runner, make_runner
 from pluto_bt.source import Faults
 from pluto_bt.trees.why_box import why_at
 
-LONG_S = 30.0
+LONG_S = 60.0
 
 
 def ask(client: Client, at_s: float | None = None) -> tuple[bool, list[dict[str, Any]]]:

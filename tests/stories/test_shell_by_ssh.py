@@ -113,5 +113,5 @@ def test_a_morning_round_by_ssh(robot: Robot) -> None:
     assert tuned.returncode == 1 and "expected somebody with the scope tune, found anna" in tuned.stderr
 
     robot.process.send_signal(signal.SIGINT)
-    assert robot.process.wait(30) == 130
+    assert robot.process.wait(60) == 130
     assert robot.by_ssh("stop").returncode == 255, "who is at the door goes with the run"

@@ -20,6 +20,7 @@ from pluto_bt.gateway.shell.live import Live
 from pluto_bt.gateway.shell.main import stop_by_key
 from pluto_bt.gateway.shell.obey import obey, split, subshell
 from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.shell.short_line import keep_short
 from pluto_bt.runtime.state_folder import state_folder
 
 REFRESH_S = 0.25
@@ -39,9 +40,11 @@ class Console:
         self._completer = TableCompleter(lambda: self._live.names)
         self._busy = BusyScreen(self._live.line, self._stop, lambda: self.say(LEFT), REFRESH_S, has_signals=has_signals)
         self._stops: set[asyncio.Task[int]] = set()
+        bindings = self._bindings()
         self._prompt: PromptSession[str] = PromptSession(
-            completer=self._completer, history=history, key_bindings=self._bindings(), bottom_toolbar=self._live.line, refresh_interval=REFRESH_S
+            completer=self._completer, history=history, key_bindings=bindings, bottom_toolbar=self._live.line, refresh_interval=REFRESH_S
         )
+        keep_short(self._prompt.default_buffer, bindings, self.complain)
 
     # Face --------------------------------------------------------------------------------------------------------
     def say(self, text: str) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.resources
 import re
 from pathlib import Path
 from xml.etree import ElementTree
@@ -12,9 +11,9 @@ from pluto_bt.gateway.shell.codes import DONE, FAILED, FailedError
 from pluto_bt.gateway.shell.driving import Act, inputs
 from pluto_bt.gateway.shell.face import Face
 from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.xml_text import element, escape
 
 OVER = ("succeeded", "failed", "aborted")
-WRAPPER = "said in the shell"
 _DECLARATION = re.compile(r"^\ufeff?\s*<\?xml[^>]*\?>")
 
 
@@ -49,15 +48,11 @@ async def run(robot: Robot, face: Face, name: str, settings: tuple[str, ...] = (
     ports = inputs(settings if waits else settings[:-1])
     before = await robot.request("mission", op="state")
     path = Path(name)
+    given = "".join(element("p", {"name": port}, escape(value)) for port, value in ports.items())
     if face.may_read_files and path.is_file():
-        await robot.request("mission", _document(path.read_text(encoding="utf-8"), ports, name), op="load", name=path.name)
-    elif ports:
-        shipped = importlib.resources.files("missions") / path.name
-        if path.name != name or not shipped.is_file():
-            raise FailedError(f'no mission "{name}"; `missions` lists them')
-        await robot.request("mission", _document(shipped.read_text(encoding="utf-8"), ports, name), op="load", name=name)
+        await robot.request("mission", given + _document(path.read_text(encoding="utf-8"), name), op="load", name=path.name)
     else:
-        await robot.request("mission", op="load", name=name if name.endswith(".xml") else f"{name}.xml")
+        await robot.request("mission", given, op="load", name=name if name.endswith(".xml") else f"{name}.xml")
     await robot.request("mission", op="start")
     if waits:
         return await _watch(robot, face, int(before.get("run", "0")))
@@ -88,19 +83,12 @@ def _told(mission: Element) -> str:
     return f"{mission.get('state')}{f' ({reason})' if reason else ''}{f' at {step}' if step else ''}"
 
 
-def _document(text: str, ports: dict[str, str], name: str) -> str:
-    """The mission as it goes into a message: as it is, but for the declaration; with `ports`, inside a tree that gives them to it."""
+def _document(text: str, name: str) -> str:
+    """The mission as it goes into a message: as it is, but for the declaration. Raises: FailedError for what is no XML."""
     text = _DECLARATION.sub("", text)
     try:
-        root = ElementTree.fromstring(text)
+        ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
         line, column = error.position
         raise FailedError(f"{name}:{line}:{column + 1}: {error}; `pluto check {name}` tells more, `pluto fmt` mends what it can") from None
-    if not ports:
-        return text
-    tree = root.find("BehaviorTree")
-    first = "" if tree is None else tree.get("ID", "")
-    outer = ElementTree.SubElement(root, "BehaviorTree", ID=WRAPPER)
-    ElementTree.SubElement(outer, "SubTree", {**ports, "ID": root.get("main_tree_to_execute", first)})
-    root.set("main_tree_to_execute", WRAPPER)
-    return ElementTree.tostring(root, encoding="unicode")
+    return text

@@ -7,7 +7,8 @@ import contextlib
 
 from aiohttp import WSMsgType, web
 
-from pluto_bt.gateway.server import SLICE_BYTES, Server
+from pluto_bt.gateway.client_protocol import SLICE_BYTES
+from pluto_bt.gateway.server import Server
 from pluto_bt.gateway.session import Session
 from pluto_bt.gateway.web.house import known
 
@@ -27,6 +28,8 @@ class WebClient:
         self._session.peer = ":".join(map(str, (request.transport.get_extra_info("peername") or ())[:2])) if request.transport else ""
         self._session.known_as(known(request, server.hub.access))
         self._wake = asyncio.Event()
+        self._may_go_on = asyncio.Event()
+        self._session.place.on_free = self._may_go_on.set
 
     def flush(self) -> None:
         """Something may have to be sent."""
@@ -62,6 +65,9 @@ class WebClient:
                     self.flush()
                     await asyncio.sleep(0)
             self.flush()
+            while self._session.place.is_held_up:
+                self._may_go_on.clear()
+                await self._may_go_on.wait()
             if at + SLICE_BYTES < len(data):
                 await asyncio.sleep(0)
 

@@ -32,7 +32,7 @@ class Site:
     async def _socket(self, request: web.Request) -> web.WebSocketResponse:
         limits = self._server.hub.limits
         connection = web.WebSocketResponse(
-            timeout=limits.linger_s, compress=False, max_msg_size=limits.mission_bytes, writer_limit=WRITER_LIMIT_BYTES
+            timeout=limits.linger_s, compress=False, max_msg_size=limits.message_bytes, writer_limit=WRITER_LIMIT_BYTES
         )
         await connection.prepare(request)
         if request.transport is not None:

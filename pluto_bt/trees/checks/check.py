@@ -64,10 +64,12 @@ def examine_mission(
         return Examined(reading.report.faults.in_order(), reading.plan)
 
 
-def load_checked(text_or_path: str | Path, nodes: Iterable[Any] = (), clock: MissionClock | None = None, *, topics: Topics | None = None) -> Mission:
-    """`load_mission` of what `check_mission` takes, in one reading; nobody gives it inputs. Raises: MissionError with all errors."""
+def load_checked(
+    text_or_path: str | Path, ports: Mapping[str, str], nodes: Iterable[Any] = (), clock: MissionClock | None = None, *, topics: Topics | None = None
+) -> Mission:
+    """`load_mission` of what `check_mission` takes, with these inputs, in one reading. Raises: MissionError with all errors."""
     with no_collecting():
-        reading = read_mission(text_or_path, nodes, None, tree=None, ports={}, topics=topics, file=None, plugins=())
+        reading = read_mission(text_or_path, nodes, None, tree=None, ports=ports, topics=topics, file=None, plugins=())
         faults = reading.report.faults
         if reading.plan is not None and reading.main is not None and not faults.is_full:
             _check_whole(reading, reading.plan)

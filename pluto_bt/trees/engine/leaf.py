@@ -1,7 +1,8 @@
 """Binds a py_trees leaf to the engine: gives the instance `step()` and `halt()` with the life cycle that missions promise.
 
 `initialise` unless it is RUNNING, `update`, then `terminate(new)` while `status` is still the old one if the work has ended.
-`update()` returning INVALID means SKIPPED; None, another value or an exception ends the tick with an error.
+`update()` returning INVALID means SKIPPED; None, another value or an exception ends the tick with an error. But a leaf of the library whose
+required input has no value, because nothing wrote its entry on this way, fails with the reason `no-input`.
 A leaf that overrides `tick` itself is ticked by its own `tick_once()`.
 """
 
@@ -16,6 +17,7 @@ from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 from py_trees.ports import NoDataAvailable
 
+from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
 from pluto_bt.trees.errors import PortMisfit, StepError
@@ -45,7 +47,7 @@ def _plain_step(leaf: Any, context: Context) -> Callable[[], Result]:
         try:
             new: Status = update()
         except Exception as error:
-            raise _blamed(leaf, error) from error
+            return _without_input(leaf, error)
         if new is SUCCESS or new is FAILURE or new is RUNNING:
             leaf.status = new
             return new
@@ -68,7 +70,7 @@ def _full_step(leaf: Any, context: Context) -> Callable[[], Result]:
                 leaf.status = new
                 return new
         except Exception as error:
-            raise _blamed(leaf, error) from error
+            return _without_input(leaf, error)
         if new is RUNNING:
             leaf.status = new
             return new
@@ -82,6 +84,19 @@ def _no_status(leaf: Any, context: Context, answer: object) -> Skip:
     if answer is IDLE:
         return _skipped(leaf, context)
     raise StepError(leaf, f"update() returned {answer!r}, which is no status")
+
+
+def _without_input(leaf: Any, error: Exception) -> Status:
+    """FAILURE of a leaf of ours that lacks an input. Raises: StepError for every other error, and of other people's leaves."""
+    if not (isinstance(error, NoDataAvailable) and isinstance(leaf, Leaf)):
+        raise _blamed(leaf, error) from error
+    leaf.fail("no-input", str(error))
+    try:
+        leaf.terminate(FAILURE)
+    except Exception as another:
+        raise _blamed(leaf, another) from another
+    leaf.status = FAILURE
+    return FAILURE
 
 
 def _blamed(leaf: Any, error: Exception) -> StepError:

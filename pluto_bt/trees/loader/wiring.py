@@ -111,7 +111,7 @@ def _get_input(leaf: Any, ports: dict[str, PortModel], readers: Readers) -> Call
         try:
             return readers[port_name]()
         except MissingValue as missing:
-            return _fallback(leaf, ports[port_name], default, str(missing))
+            return _fallback(leaf, ports[port_name], default, f"{missing}; write it on every way that leads here, or once at the beginning")
         except PortProblem as misfit:
             raise PortMisfit(f"port {port_name!r}: {misfit}") from None
         except KeyError:
@@ -119,7 +119,7 @@ def _get_input(leaf: Any, ports: dict[str, PortModel], readers: Readers) -> Call
                 raise
         if port_name not in ports or ports[port_name].direction == "out":
             raise KeyError(f"{leaf.name}: input port {port_name!r} is not declared")
-        return _fallback(leaf, ports[port_name], default, "it is not given")
+        return _fallback(leaf, ports[port_name], default, "give it in the file")
 
     return get_input
 
@@ -150,4 +150,4 @@ def _fallback(leaf: Any, port: PortModel, default: Any, why: str) -> Any:
     if port.default is not None:
         value = port.default
         return port.kind.convert(value) if isinstance(value, str) else copy.deepcopy(value)
-    raise NoDataAvailable(f"input port {port.name!r} has no data: {why}")
+    raise NoDataAvailable(f'port "{port.name}" of "{leaf.name}" has no value: {why}')

@@ -1,7 +1,7 @@
 // The bar at the top and the figures on the map, all with the age of what they show.
 
 import { age, byId, clock, degrees, say, show } from "./dom.js";
-import { missionReason, missionWords } from "./panels.js";
+import { missionReason, missionWords } from "./mission.js";
 
 const FAST = new Set(["ATRV2/Drive/Raw"]), MOMENT_S = 0.3;
 const SILENT_MS = 1200; // the answer to a ping comes each second, if nothing else does

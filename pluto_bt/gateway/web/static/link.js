@@ -76,6 +76,7 @@ export class Link {
     for (const [topic, rate_hz, onChange] of this.wishes) {
       this.ask("subscribe", { topic, max_rate_hz: rate_hz, on_change: Boolean(onChange) }).catch(() => {});
     }
+    this.ping(); // so that the page knows at once how good the link is, and the time of the run
     this.tell("up");
   }
 
@@ -149,13 +150,15 @@ export class Link {
       this.closed(this.socket); // at once: the closing handshake may never end
     }
     if (!this.isUp && this.socket?.readyState === WebSocket.CONNECTING && now_ms - this.opened_ms > 2 * LOST_MS) this.socket.close();
-    if (this.isUp && now_ms - (this.pinged_ms ?? 0) >= PING_MS) {
-      this.pinged_ms = now_ms;
-      this.ask("ping").then((pong) => {
-        this.roundTrip_ms = performance.now() - now_ms;
-        this.tell("clock", Number(pong.time));
-      }).catch(() => {});
-    }
+    if (this.isUp && now_ms - this.pinged_ms >= PING_MS) this.ping();
+  }
+
+  ping() {
+    const now_ms = this.pinged_ms = performance.now();
+    this.ask("ping").then((pong) => {
+      this.roundTrip_ms = performance.now() - now_ms;
+      this.tell("clock", Number(pong.time));
+    }).catch(() => {});
   }
 
   closed(socket) {

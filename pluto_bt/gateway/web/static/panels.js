@@ -1,11 +1,9 @@
-// The smaller panels: tabs, mission, events, modules, signals.
+// The smaller panels: tabs, events, modules, signals.
 
 import { age, byId, clock, make, say, show, toast } from "./dom.js";
 
 const EVENTS_KEPT = 300;
-const ASKED_MS = 6000; // so long a button waits for the click that confirms
 const LEVELS = { info: ["·", "info"], warning: ["▲", "warning"], error: ["✕", "error"] };
-const MISSION_SIGNS = { idle: "○", running: "▶", paused: "❚❚", stopping: "■", succeeded: "✓", failed: "✕", aborted: "■" };
 
 export class Tabs {
   constructor() {
@@ -41,79 +39,6 @@ export class Tabs {
     const next = seen[(seen.indexOf(tab) + step + seen.length) % seen.length];
     this.open(next);
     next.focus();
-  }
-}
-
-export function missionWords({ state }) {
-  return `${MISSION_SIGNS[state] ?? "?"} ${state}`;
-}
-
-export function missionReason({ state, reason }) {
-  return reason && state !== "running" ? ` · ${reason}` : "";
-}
-
-export class Mission {
-  constructor(link, store, lease) {
-    Object.assign(this, { link, store, lease });
-    store.on("mission/state", ({ fields }) => this.take(fields));
-    for (const button of byId("mission-ops").children) button.onclick = () => this.order({ op: button.dataset.op });
-    byId("mission-start").onclick = () => this.begin(byId("mission-choice").value);
-    byId("mission-choice").onchange = () => this.ask("");
-    link.on("up", () => this.list());
-  }
-
-  take(fields) {
-    say(byId("mission-state"), missionWords(fields) + missionReason(fields));
-    say(byId("mission-step"), [fields.name, fields.step].filter(Boolean).join(" · "));
-    const can = { pause: fields.state === "running", resume: fields.state === "paused", abort: ["running", "paused", "stopping"].includes(fields.state) };
-    for (const button of byId("mission-ops").children) button.disabled = !can[button.dataset.op];
-  }
-
-  async list() {
-    const { rows } = await this.link.ask("mission", { op: "list" }).catch(() => ({ rows: [] }));
-    byId("mission-choice").replaceChildren(...rows.map(({ name }) => make("option", { value: name }, name)));
-  }
-
-  /** A mission that goes on needs no lease; one that is still held would stop it when this page is closed. */
-  async order(given) {
-    try {
-      await this.link.ask("mission", given);
-      if (this.lease.isMine && ["start", "resume"].includes(given.op)) await this.lease.give();
-      return true;
-    } catch (error) {
-      toast(error.message);
-      return false;
-    }
-  }
-
-  /** One that goes on is replaced only by a second click. */
-  begin(name) {
-    const { state, name: running } = this.store.fields("mission/state") ?? {};
-    if (["running", "paused", "stopping"].includes(state) && this.asked !== name) this.ask(name, `End ${running}, start ${name}`);
-    else {
-      this.ask("");
-      this.start(name);
-    }
-  }
-
-  ask(name, words = "Load and start") {
-    this.asked = name;
-    say(byId("mission-start"), words);
-    byId("mission-start").classList.toggle("danger", Boolean(name));
-    clearTimeout(this.asking);
-    if (name) this.asking = setTimeout(() => this.ask(""), ASKED_MS);
-  }
-
-  async start(name) {
-    byId("mission-faults").replaceChildren();
-    try {
-      await this.link.ask("mission", { op: "load", name });
-    } catch (error) {
-      byId("mission-faults").replaceChildren(...error.lines.flatMap((text) => text.split("\n")).filter((line) => line.trim()).map((line) => make("li", {}, line)));
-      return;
-    }
-    const isRunning = this.store.fields("mission/state")?.state === "running";
-    if (!isRunning || await this.order({ op: "pause" })) await this.order({ op: "start" });
   }
 }
 
