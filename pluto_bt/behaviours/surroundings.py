@@ -152,11 +152,11 @@ class Surroundings:
         return self._passers_by.are_awaited(now_s)
 
     def sees_walkers(self, now_s: float) -> bool:
-        """True if the laser saw somebody walk a moment ago, however far."""
+        """True if the laser saw somebody walk, however far, and has not looked there in vain since for long."""
         return len(self._walked.places(now_s)) > 0
 
     def find_behind_walkers(self, goal: Pair, now_s: float) -> Way | None:
-        """The way to a goal (`Localization/Pose`) that there would be but for what stands where somebody walked a moment ago."""
+        """The way to a goal (`Localization/Pose`) that there would be but for what stands where somebody walked lately."""
         places = self._walked.places(now_s)
         if not len(places):
             return None

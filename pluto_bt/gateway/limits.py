@@ -20,7 +20,7 @@ class Limits(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     depth: Annotated[Count, Meta(description="elements inside each other, the message itself counted")] = 16
     mission_depth: Annotated[Count, Meta(description="the same inside a mission, the mission itself not counted")] = 256
     attributes: Annotated[Count, Meta(description="attributes of one element, declarations of name-spaces included")] = 32
-    names: Annotated[Count, Meta(description="different names of elements, attributes and name-spaces in one message")] = 4096
+    names: Annotated[Count, Meta(description="different names of elements, attributes and name-spaces in one mission")] = 4096
     documents: Annotated[Count, Meta(description="messages of more than 16 KiB that all clients together may have under way; others wait")] = 2
     document_s: Annotated[Seconds, Meta(description="how long the sending of one may take while others wait")] = 3.0
     messages_per_s: Annotated[float, Meta(gt=0.0, description="messages a second of one client, and at once; stops do not count")] = 200.0

@@ -42,7 +42,7 @@ class Reading:
         self.open: list[str] = []
         self.is_mission = self.is_complete = False
         self._limits = limits
-        self._names: set[str] = set()  # expat keeps each of them until the message ends, at ten times its length
+        self._names: set[str] = set()  # of a mission, which may be long: expat keeps each until the message ends, at ten times its length
         self._declared = 0  # name-spaces of the element that is about to begin
         self._child: tuple[str, Attributes] = ("", {})
         self._child_text, self._child_is_leaf = "", True
@@ -61,7 +61,8 @@ class Reading:
     # expat's calls -----------------------------------------------------------------------------------------------
     def _declare(self, prefix: str | None, uri: str | None) -> None:
         self._declared += 1
-        self._names.add(f"xmlns:{prefix}")
+        if self.is_mission:
+            self._names.add(f"xmlns:{prefix}")
 
     def _begin(self, name: str, attributes: Attributes) -> None:
         """Raises: RestrictedError beyond a bound."""
@@ -75,9 +76,9 @@ class Reading:
         else:
             self._child_is_leaf = False
         count, self._declared = len(attributes) + self._declared, 0
-        self._names.add(name)
-        self._names.update(attributes)
         self._require_bounds(depth, count)
+        if self.is_mission:
+            self._require_few_names(name, attributes)
 
     def _require_bounds(self, depth: int, attributes: int) -> None:
         limit = self._limits.mission_depth + 1 if self.is_mission else self._limits.depth
@@ -85,8 +86,12 @@ class Reading:
             raise RestrictedError("too-deep", f"expected at most {limit} elements inside each other")
         if attributes > self._limits.attributes:
             raise RestrictedError("too-large", f"expected at most {self._limits.attributes} attributes, found {attributes}")
+
+    def _require_few_names(self, name: str, attributes: Attributes) -> None:
+        self._names.add(name)
+        self._names.update(attributes)
         if len(self._names) > self._limits.names:
-            raise RestrictedError("too-large", f"expected at most {self._limits.names} different names in a message")
+            raise RestrictedError("too-large", f"expected at most {self._limits.names} different names in a mission")
 
     def _end(self, name: str) -> None:
         self.open.pop()

@@ -8,12 +8,15 @@ import numpy as np
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.seen_kernels import CAME, Counts
 from pluto_bt.skills.sonar import Mask, SonarRing
 
 ROUNDS = 4
+PERHAPS, WALKS, SURELY = 1, 2, 3  # how well it is known that an echo is somebody's
 HEAR_M = 3.0
 NEARER_M = 0.12  # over the rounds: four sigma of a difference of two echoes, and 0.4 m/s
 EVENLY = 0.6  # of the whole, at most, in one round: what comes into a cone from its side comes in one leap, as a post does beside which we drive
+LEAST_EVENLY = 0.75  # the same for what is no wall: it comes in one leap, and then it stands
 SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands across the way
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
@@ -35,20 +38,21 @@ class Approach:
         self._rounds: list[tuple[Array, Planar, float]] = []
         self._lost = np.zeros(ring.count, dtype=np.intp)  # rounds in a row without an echo
 
-    def look(self, ranges_m: Array, robot: Planar, stamp_s: float, came: Mask) -> Array:
-        """Take a round, heard from `robot`; `came`: (k,) whose echo comes from where a moment ago all was free.
+    def look(self, ranges_m: Array, robot: Planar, stamp_s: float, news: Counts) -> Array:
+        """Take a round, heard from `robot`; `news`: (k,) as `SeenSpace.add_echoes` says.
 
-        Returns: (n, 4) x m, y m, how far beside that, and 1 = surely, for each transducer that hears somebody come or go. What changes while
-            the robot stands, no motion of its own can explain.
+        Returns: (n, 4) x m, y m, how far beside that, and PERHAPS, WALKS or SURELY, for each transducer that hears somebody come or go. What
+            changes while the robot stands, no motion of its own can explain: that is sure.
         """
         ranges_m = self._without_losses(ranges_m)
         self._rounds = [*self._rounds[1 - ROUNDS :], (ranges_m, robot, stamp_s)]
         first_m, _, first_s = self._rounds[0]
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
-        nearer_m, came = (np.abs(first_m - ranges_m), came) if self._is_alone else (first_m - ranges_m, np.zeros_like(came))
+        nearer_m = np.abs(first_m - ranges_m) if self._is_alone else first_m - ranges_m
+        came, is_small = (news == CAME) & self._is_alone, (news != 0) & (not self._is_alone)
         near = (ranges_m < HEAR_M) & (nearer_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
-        return self._those_who_walk(near, came) if near.any() or came.any() else NOTHING
+        return self._those_who_walk(near, came, is_small) if near.any() or came.any() else NOTHING
 
     def _without_losses(self, ranges_m: Array) -> Array:
         """The echoes, the last ones where they have only just stopped coming."""
@@ -56,58 +60,68 @@ class Approach:
         self._lost = np.where(is_silent, self._lost + 1, 0)
         return np.where(is_silent & (self._lost <= MOST_LOST), self._rounds[-1][0], ranges_m) if self._rounds else ranges_m
 
-    def _those_who_walk(self, near: Mask, came: Mask) -> Array:
+    def _those_who_walk(self, near: Mask, came: Mask, is_small: Mask) -> Array:
         """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came."""
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
         swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
         stays = heard_m[-1] * swept_rad < SWEPT_M  # where a cone ends while the robot turns fast is not known well enough to say what was free
-        moved = walked(heard_m, places, axes, near, half_rad) | (came & stays)
-        if not moved.any():
+        moved = walked(heard_m, places, axes, near, is_small, half_rad)
+        moved[came & stays] = WALKS
+        which = np.flatnonzero(moved)
+        if not len(which):
             return NOTHING
         x, y, theta = places[-1].tolist()
-        c, s, which, ranges_m = math.cos(theta), math.sin(theta), np.flatnonzero(moved), heard_m[:, moved].min(axis=0)
+        c, s, ranges_m = math.cos(theta), math.sin(theta), heard_m[:, which].min(axis=0)
         axis_rad = theta + axes[which, 2]
         apex_x, apex_y = x + c * axes[which, 0] - s * axes[which, 1], y + s * axes[which, 0] + c * axes[which, 1]
         is_sure = math.dist(places[0, :2], places[-1, :2]) + ranges_m * swept_rad < STANDING_M
-        ends = (apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad), is_sure)
-        return np.column_stack(ends)
+        how = np.where(moved[which] == PERHAPS, PERHAPS, np.where(is_sure, SURELY, WALKS))
+        return np.column_stack((apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad), how))
 
 
 @kernel
-def walked(heard_m: Array, places: Array, axes: Array, near: Mask, half_cone_rad: float) -> Mask:
-    """(k,) which of the `near` transducers hear something come or go that the robot's own motion does not explain.
+def walked(heard_m: Array, places: Array, axes: Array, near: Mask, is_small: Mask, half_cone_rad: float) -> Counts:
+    """(k,) which of the `near` transducers hear something come or go that the robot's own motion does not explain: WALKS, PERHAPS or 0.
 
     Args:
         heard_m: (rounds, k). places: (rounds, 3) of the robot. axes: (k, 3) of the transducers, robot frame.
+        is_small: (k,) whose echo no wall explains that a laser saw; if it is from none, it is from somebody PERHAPS.
     """
-    rounds, count = heard_m.shape
-    found = np.zeros(count, dtype=np.bool_)
-    swept_rad = abs(places[rounds - 1, 2] - places[0, 2])
-    for k in range(count):
-        if not near[k]:
-            continue
-        first_m, second_m, last_m = heard_m[0, k], heard_m[1, k], heard_m[rounds - 1, k]
-        comes = last_m < first_m
-        total_m, most_m, moved_m = 0.0, -math.inf, 0.0
-        for r in range(1, rounds):
-            way_m, nearer_m = own_m(places, axes, r, k, half_cone_rad)
-            step_m = heard_m[r - 1, k] - heard_m[r, k] - nearer_m if comes else heard_m[r, k] - heard_m[r - 1, k] - FARTHER * way_m
-            total_m, most_m, moved_m = total_m + step_m, max(most_m, step_m), moved_m + way_m
-        sweeps_m = min(last_m, HEAR_M) * swept_rad
-        least_m = NEARER_M + GRAZING * sweeps_m
-        if moved_m + sweeps_m < STANDING_M:
-            gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
-            found[k] = gap_m > least_m
-        else:
-            is_even = total_m > least_m and most_m < EVENLY * total_m
-            found[k] = is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M
+    found = np.zeros(heard_m.shape[1], dtype=np.intp)
+    for k in range(found.shape[0]):
+        if near[k] and moves(heard_m, places, axes, k, False, half_cone_rad):
+            found[k] = WALKS
+        elif near[k] and is_small[k] and moves(heard_m, places, axes, k, True, half_cone_rad):
+            found[k] = PERHAPS
     return found
 
 
 @inline_kernel
-def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> tuple[float, float]:
+def moves(heard_m: Array, places: Array, axes: Array, k: int, is_small: bool, half_cone_rad: float) -> bool:
+    """Whether what transducer `k` hears moves, if the echo may be a wall's, or surely that of something small."""
+    rounds = heard_m.shape[0]
+    first_m, second_m, last_m = heard_m[0, k], heard_m[1, k], heard_m[rounds - 1, k]
+    comes = last_m < first_m
+    total_m, most_m, moved_m = 0.0, -math.inf, 0.0
+    for r in range(1, rounds):
+        way_m, nearer_m = own_m(places, axes, r, k, is_small, half_cone_rad)
+        step_m = heard_m[r - 1, k] - heard_m[r, k] - nearer_m if comes else heard_m[r, k] - heard_m[r - 1, k] - FARTHER * way_m
+        total_m, most_m, moved_m = total_m + step_m, max(most_m, step_m), moved_m + way_m
+    if is_small:
+        return bool(comes and total_m > NEARER_M and most_m < LEAST_EVENLY * total_m)
+    sweeps_m = min(last_m, HEAR_M) * abs(places[rounds - 1, 2] - places[0, 2])
+    least_m = NEARER_M + GRAZING * sweeps_m
+    gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
+    if moved_m + sweeps_m < STANDING_M and gap_m > least_m:
+        return True
+    is_even = total_m > least_m and most_m < EVENLY * total_m
+    return bool(is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M)
+
+
+@inline_kernel
+def own_m(places: Array, axes: Array, r: int, k: int, is_small: bool, half_cone_rad: float) -> tuple[float, float]:
     """The way of a transducer in the robot's step to round r, and how much nearer what stands can have come by it; infinite if nobody can say."""
     c0, s0, c1, s1 = math.cos(places[r - 1, 2]), math.sin(places[r - 1, 2]), math.cos(places[r, 2]), math.sin(places[r, 2])
     dx = places[r, 0] - places[r - 1, 0] + (c1 - c0) * axes[k, 0] - (s1 - s0) * axes[k, 1]
@@ -115,6 +129,8 @@ def own_m(places: Array, axes: Array, r: int, k: int, half_cone_rad: float) -> t
     way_m = math.hypot(dx, dy)
     off_rad = math.atan2(dy, dx) - places[r, 2] - axes[k, 2]
     aside_rad = abs(math.atan2(math.sin(off_rad), math.cos(off_rad)))
+    if is_small:  # what does not reach out of the cone comes nearer by no more than the way towards the cone's nearer edge
+        return way_m, SLANT * way_m * math.cos(min(max(0.0, aside_rad - half_cone_rad), 0.5 * math.pi))
     edge_rad = min(aside_rad + half_cone_rad, WIDEST_RAD)
     known = edge_rad < WIDEST_RAD or way_m < STANDING_M / ROUNDS
     return way_m, SLANT * way_m / math.cos(edge_rad) if known else math.inf
@@ -125,4 +141,4 @@ NOTHING: Array = np.zeros((0, 4))
 
 def warm() -> None:
     """Use the kernel once, so that who comes near first is not met while it is compiled."""
-    walked(np.zeros((ROUNDS, 1)), np.zeros((ROUNDS, 3)), np.zeros((1, 3)), np.zeros(1, dtype=np.bool_), 0.1)
+    walked(np.zeros((ROUNDS, 1)), np.zeros((ROUNDS, 3)), np.zeros((1, 3)), np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.bool_), 0.1)

@@ -133,7 +133,7 @@ class _Ear:
             space.drop_echoes()
             return
         news = space.add_echoes(self._ring.axes, self._leaves_m, ranges_m, self._sonar, at, sonar.stamp_s)
-        found = self._approach.look(ranges_m, at, sonar.stamp_s, news == CAME)
+        found = self._approach.look(ranges_m, at, sonar.stamp_s, news)
         walkers.take_echoes(found, sonar.stamp_s)
-        if self._is_alone and (len(found) or news.any()):
+        if self._is_alone and (len(found) or (news >= CAME).any()):
             walkers.doubt(sonar.stamp_s)

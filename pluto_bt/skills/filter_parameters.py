@@ -23,7 +23,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     fleeting_memory_s: Annotated[Positive, Meta(description="the same for an echo where the sonar had just heard nothing")] = 3.0
     walker_memory_s: Annotated[NotNegative, Meta(description="how long who walked out of view is reckoned with")] = 30.0
     starter_s: Annotated[NotNegative, Meta(description="so long after its start somebody is about: who started it")] = 0.0
-    walker_gap_s: Annotated[Positive, Meta(description="nobody walked in where it was seen to be free so short a time ago")] = 0.6
+    walker_gap_s: Annotated[Positive, Meta(description="nobody walked in where it was seen to be free so short a time ago")] = 0.5
     stranger_gap_s: Annotated[Positive, Meta(description="the same for somebody whom no sensor found, while others walk about")] = 0.6
     hear_m: Annotated[Positive, Meta(description="echoes farther than this are not used")] = 2.5
     laser_stale_s: Annotated[NotNegative, Meta(description="older scans mean zero velocity; 0 = the laser's delay and 1.25 periods")] = 0.0

@@ -15,6 +15,8 @@ NEEDLE_BEAMS = 0.7
 GRAZING_M = 1.5  # neighbouring beams that differ by less may graze one wall, which goes on beyond its end by as much till the next beam
 APART_M = 0.3  # neighbouring beams that differ more end on different things
 WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its visible part shifts as we pass
+PERSON_M = 0.7  # what is wider may be somebody beside a wall …
+RUN_BEAMS = 5  # … if so many beams side by side end in former free space
 MOVED_BEAMS = 2  # so many beams must end in former free space
 STEP_M = 0.5  # nothing that is tracked goes farther between two scans
 FASTEST_MPS = 2.0
@@ -25,7 +27,7 @@ class Movers:
     """Follows pieces from scan to scan. Velocities are in the frame of the points."""
 
     def __init__(self) -> None:
-        self._last: tuple[Array, Beams] = (np.zeros((0, 2)), np.zeros(0, dtype=np.intp))
+        self._last: tuple[Array, Beams, Mask] = (np.zeros((0, 2)), np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.bool_))
         self._stamp_s = -np.inf
         self._walkers = np.zeros((0, 5))  # x, y at the last scan, velocity x, y, stamp of the scan that saw him walk
 
@@ -42,20 +44,19 @@ class Movers:
             beams: (n,) the number of each point's beam.
             moved: (n,) whether the beam ends in what was free space.
         """
-        last, self._last = self._last, (points, beams)
+        last, self._last = self._last, (points, beams, moved)
         dt_s, self._stamp_s = stamp_s - self._stamp_s, stamp_s
         expected = self._walkers[self._walkers[:, 4] > stamp_s - FOLLOW_S]
         expected[:, :2] += expected[:, 2:4] * min(dt_s, 1.0)
         self._walkers = np.zeros((0, 5))
         if not len(points) or (np.count_nonzero(moved) < MOVED_BEAMS and not len(expected)):
             return np.zeros(len(points), dtype=bool), np.zeros((len(points), 2))
-        starts, sizes, centres, widths = _pieces(points, beams)
-        is_narrow = widths < WIDEST_M
+        starts, sizes, centres, is_narrow = _pieces(points, beams, moved)
         walks = (np.add.reduceat(moved.astype(np.intp), starts) >= MOVED_BEAMS) & is_narrow
         before = np.zeros((0, 2))
         if len(last[0]) and 0.0 < dt_s < 1.0:
-            _, _, before, widths_before = _pieces(*last)
-            before = before[widths_before < WIDEST_M]
+            _, _, before, was_narrow = _pieces(*last)
+            before = before[was_narrow]
         rows = np.zeros((len(starts), 5))  # as self._walkers
         rows[:, :2], rows[:, 4] = centres, stamp_s
         for i in np.flatnonzero(is_narrow).tolist():
@@ -68,14 +69,32 @@ class Movers:
         return walks[piece], rows[piece, 2:4]
 
 
-def _pieces(points: Array, beams: Beams) -> tuple[Beams, Beams, Array, Array]:
-    """The pieces of a scan that hang together: first point, number of points, centre and width of each."""
+def _pieces(points: Array, beams: Beams, moved: Mask) -> tuple[Beams, Beams, Array, Mask]:
+    """The pieces of a scan that hang together: first point, number of points and centre of each, and whether it may be a person or a vehicle.
+
+    Somebody so near to a wall that he hangs together with it is a piece of his own: the beams that end in former free space. The rest of the
+    wall is nobody.
+    """
     steps = np.hypot(points[1:, 0] - points[:-1, 0], points[1:, 1] - points[:-1, 1])
-    starts = np.concatenate(([0], 1 + np.flatnonzero((steps > APART_M) | (np.diff(beams) > 3))))
-    ends = np.append(starts[1:], len(points))
+    begins = np.concatenate(([True], (steps > APART_M) | (np.diff(beams) > 3)))
+    starts, ends, widths = _spans(points, begins)
+    is_rest = np.zeros(len(points), dtype=np.bool_)
+    edges = np.flatnonzero(np.diff(np.concatenate(([0], moved.astype(np.int8), [0]))))
+    for first, end in edges.reshape(-1, 2).tolist():
+        i = int(np.searchsorted(starts, first, side="right")) - 1
+        if end - first >= RUN_BEAMS and end <= ends[i] and widths[i] > PERSON_M:
+            is_rest[starts[i] : ends[i]] |= ~moved[starts[i] : ends[i]]
+            begins[first], begins[end : end + 1] = True, True
+    starts, ends, widths = _spans(points, begins)
     centres = np.add.reduceat(points, starts, axis=0) / (ends - starts)[:, None]
-    widths = np.hypot(points[ends - 1, 0] - points[starts, 0], points[ends - 1, 1] - points[starts, 1])
-    return starts, ends - starts, centres, widths
+    return starts, ends - starts, centres, (widths < WIDEST_M) & ~is_rest[starts]
+
+
+def _spans(points: Array, begins: Mask) -> tuple[Beams, Beams, Array]:
+    """First point, the one behind the last, and width of each piece, given where they begin."""
+    starts = np.flatnonzero(begins)
+    ends = np.append(starts[1:], len(points))
+    return starts, ends, np.hypot(points[ends - 1, 0] - points[starts, 0], points[ends - 1, 1] - points[starts, 1])
 
 
 def _nearest(place: Array, others: Array, within_m: float) -> int:

@@ -27,7 +27,7 @@ TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
 TWICE_S = 0.25  # a round of the ring ago, and in between none may be missing but one
 SUDDEN_M = 1.0  # who is heard so near where nothing was known may be on his way
-CAME, SUDDEN = 1, 2
+UNKNOWN, CAME, SUDDEN = 1, 2, 3
 ANYHOW, INSIDE = 0, 1  # layers of `heard`
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
@@ -147,7 +147,8 @@ def hear_cones(
 
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
-        news: (k,) is filled: CAME, an echo's whole arc was heard free a moment ago, so what is there now walks; SUDDEN, it is near and new.
+        news: (k,) is filled: UNKNOWN, the laser saw nothing that explains an echo; CAME, also its whole arc was heard free a moment ago, so what
+            is there now walks; SUDDEN, it is near and new.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
@@ -163,8 +164,9 @@ def hear_cones(
             if clears == 0 and echo_m <= cones[k, 5]:
                 cones[k, 3], touching = TOUCHING_M, touching + 1
                 continue
-            if clears == 0 and echo_m < SUDDEN_M and not is_explained(LOW, stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad):
-                news[k] = SUDDEN
+            if clears == 0:
+                is_new = echo_m < SUDDEN_M and not is_explained(LOW, stamps, spots, corner_x_m, corner_y_m, cones, k, half_cone_rad)
+                news[k] = SUDDEN if is_new else UNKNOWN
             c, s = math.cos(cones[k, 2]), math.sin(cones[k, 2])
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])

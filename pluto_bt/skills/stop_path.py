@@ -11,14 +11,15 @@ from pluto_bt.skills.outline import Array, Outline
 from pluto_bt.skills.seen_kernels import CELL_M, NEVER, cell_of, outside_m
 
 CLEAR, MEETS, UNSEEN, WALKER = 0, 1, 2, 3
-STEP_M = 0.03  # the rim is looked at each time the outline may have moved so far
+STEP_M = 0.03  # the rim is looked at each time the outline may have moved so far …
+STEP_S = 0.1  # … and after so long where somebody may come up meanwhile
 NEARER_M = 0.004  # a point already within its margin may come nearer by so much in one decision, but never nearer than LEAST_M
 DEEP_M = -0.1  # points deeper inside the outline are the robot itself
 MOST_MARGIN_M = 0.1
 LONGEST_S = 8.0
 BODY_M, SLIM_M = 0.2, 0.1  # who touches the outline has his middle about so far outside of it, give or take the second
 FAN_RAD = math.radians(15.0)  # a corner may be touched from all directions between its two edges' normals: one is looked at in each so much
-WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS, IN_VIEW = range(7)  # columns of the walkers
+WALKER_X, WALKER_Y, DRIFT_X, DRIFT_Y, SPREAD_M, GROWTH_MPS, IN_VIEW, WALKER_COLUMNS = range(8)  # columns of the walkers, and how many there are
 STRANGER = -1.0  # in place of IN_VIEW: somebody whom no sensor found
 SPEED, TURN_RATE, ACCELERATION, DECELERATION, TURN_ACCELERATION, HOLD_S, REACH_M, LEAST_M, MARGIN_M, MARGIN_S, CREEP_MPS = range(11)
 
@@ -37,7 +38,7 @@ def first_trouble(
         figures: the robot's twist now, its limits, how long the command holds before the brakes bite, and so on (the constants above).
         speed_mps, turn_rate_radps: the command.
         known_since_s: cells seen before are not known any more.
-        walkers: (k, 7) the discs in which the middles of walkers are; see `Walker.row`.
+        walkers: (k, WALKER_COLUMNS) the discs in which the middles of walkers are; see `Walker.row`.
         fresh_since_s, lately_since_s: nobody who is out of view is where it was seen to be free since, and no STRANGER.
     Returns: (CLEAR, -1, 0), (MEETS, point, s), (UNSEEN, rim point, s) or (WALKER, rim point, s): what comes first, and when.
     """
@@ -46,15 +47,16 @@ def first_trouble(
     margin_m = min(figures[MARGIN_M] + figures[MARGIN_S] * fastest, MOST_MARGIN_M)
     for i in range(count):
         points[i, 3] = margin_of(outside_m(planes, points[i, 0], points[i, 1]), margin_m, figures[LEAST_M])
-    x, y, turned, t_s, to_point_m, to_rim_m, was_held = 0.0, 0.0, 0.0, 0.0, 0.0, STEP_M, True
+    x, y, turned, t_s, to_point_m, to_rim_m, looked_s, was_held = 0.0, 0.0, 0.0, 0.0, 0.0, STEP_M, 0.0, True
     while t_s < LONGEST_S:
         if to_point_m <= 0.0:
             to_point_m, which = nearest(points, count, planes, x, y, turned)
             if to_point_m <= 0.0:
                 return MEETS, which, t_s
         goes_on = t_s < figures[HOLD_S]
-        if to_rim_m <= 0.0 or (was_held and not goes_on):  # when the brakes begin to bite it is fastest
-            to_rim_m, was_held = STEP_M, goes_on
+        is_due = to_rim_m <= 0.0 or (walkers.shape[0] > 0 and t_s - looked_s > STEP_S)
+        if is_due or (was_held and not goes_on):  # when the brakes begin to bite it is fastest
+            to_rim_m, looked_s, was_held = STEP_M, t_s, goes_on
             creep_mps = figures[CREEP_MPS]
             kind, which = rim_in_danger(
                 rim, seen, stamps, corner_x_m, corner_y_m, x_m, y_m, theta_rad, x, y, turned, v, w, creep_mps, known_since_s,

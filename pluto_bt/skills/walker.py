@@ -13,11 +13,13 @@ from pluto_bt.skills.outline import Array, Planar
 
 IN_VIEW_S = 0.6  # after so long without being seen he is out of view …
 BLINK_S = 4.0  # … or after so long in which no level scan looked for him
+LOST_S = 1.5  # who went behind something so short a time ago may come out again at once: ground that is seen to be free does not stop him
 GLANCE_S = 0.5  # a look away for so short a time does not count for one who stands
 SAME_M = 0.4  # who is seen where somebody can have come to since, give or take this, is the same one
 BODY_M = 0.3
 REFUTED_S = 0.3  # who is not seen in the next scans, where he must be, was a phantom
 UNSTEADY_MPS = 0.2  # nobody walks quite evenly
+KEEPS = 0.25  # the middle of where who walks in view may be goes on with so much of his velocity: back from it he walks a little slower than on
 MOST_MPS, HURRY = 2.0, 1.25
 HEARD_MPS = 1.2  # how fast somebody may be who was only heard
 
@@ -52,20 +54,25 @@ class Walker:
     def is_in_view(self, now_s: float) -> bool:
         """Whether he was seen just now; a laser that looks down for a moment does not lose him."""
         age_s = now_s - self.walked_s
-        return age_s <= IN_VIEW_S or (self.looked_for_s <= IN_VIEW_S and age_s <= BLINK_S and (self.vx_mps, self.vy_mps) != (0.0, 0.0))
+        return age_s <= IN_VIEW_S or (self.looked_for_s <= IN_VIEW_S and age_s <= BLINK_S and self._was_seen)
+
+    @property
+    def _was_seen(self) -> bool:
+        """Whether a laser saw him walk; who was only heard has no velocity."""
+        return (self.vx_mps, self.vy_mps) != (0.0, 0.0)
 
     def row(self, now_s: float) -> tuple[float, ...]:
         """What `stop_path` reckons with: the disc in which his middle must be now (x m, y m, 4: m), how it drifts, how it grows, 1 = in view.
 
-        Who walks in view does anything between standing still and going on, bending to either side.
+        Who walks in view goes on, stops, bends aside, or turns on his heel. Who was lost just now may be anywhere.
         """
-        age_s, speed_mps = now_s - self.stamp_s, math.hypot(self.vx_mps, self.vy_mps)
-        if not self.is_in_view(now_s):
-            return self.x_m, self.y_m, 0.0, 0.0, self.spread_m(now_s), self.growth_mps, 0.0
-        if speed_mps == 0.0:
-            return self.x_m, self.y_m, 0.0, 0.0, self.spread_m(now_s), self.growth_mps, 1.0
-        drift_x, drift_y, growth_mps = 0.5 * self.vx_mps, 0.5 * self.vy_mps, 0.5 * speed_mps + UNSTEADY_MPS
-        return self.x_m + drift_x * age_s, self.y_m + drift_y * age_s, drift_x, drift_y, self.unsure_m + growth_mps * age_s, growth_mps, 1.0
+        is_in_view, age_s = self.is_in_view(now_s), now_s - self.stamp_s
+        if is_in_view and self._was_seen:
+            drift_x, drift_y = KEEPS * self.vx_mps, KEEPS * self.vy_mps
+            growth_mps = (1.0 - KEEPS) * math.hypot(self.vx_mps, self.vy_mps) + UNSTEADY_MPS
+            return self.x_m + drift_x * age_s, self.y_m + drift_y * age_s, drift_x, drift_y, self.unsure_m + growth_mps * age_s, growth_mps, 1.0
+        is_near = is_in_view or (self._was_seen and now_s - self.walked_s <= LOST_S)
+        return self.x_m, self.y_m, 0.0, 0.0, self.spread_m(now_s), self.growth_mps, float(is_near)
 
     def may_be(self, seen: Walker) -> bool:
         """Whether who is seen may be he."""
@@ -98,12 +105,12 @@ class Walker:
         """
         if scan.stamp_s - self.stamp_s < REFUTED_S:
             return False
-        x_m, y_m, _, _, spread_m, _, _ = self.row(scan.stamp_s)
-        window = _window(scan, laser, x_m, y_m, spread_m + BODY_M)
+        spread_m = self.spread_m(scan.stamp_s)
+        window = _window(scan, laser, self.x_m, self.y_m, spread_m + BODY_M)
         if window is None:
             return False
         beams = scan.ranges_m[window]
-        explained = (beams > math.hypot(x_m - laser[0], y_m - laser[1]) + spread_m + BODY_M) | (believed[window] == 0.0)
+        explained = (beams > math.hypot(self.x_m - laser[0], self.y_m - laser[1]) + spread_m + BODY_M) | (believed[window] == 0.0)
         bearings = laser[2] + scan.angle_min_rad + scan.angle_step_rad * np.arange(window.start, window.stop)
         end_x, end_y = laser[0] + beams * np.cos(bearings), laser[1] + beams * np.sin(bearings)
         for one in seen:

@@ -1,8 +1,8 @@
 """Who walks about: the stop filter's own memory of people and other moving things, seen or gone out of sight. Frame: dead reckoning.
 
-Who is in view is thought to go on about as he does. Who stops there is thought to stay. Who went out of view may be anywhere that his legs
-can have taken him to since, for `memory_s`; what the sensors have seen to be free lately is left out by `stop_path`, which asks. Nothing is
-assumed of people who were never seen to walk.
+Everybody may be anywhere that his legs can have taken him to since he was seen: people turn on their heels. Who stops in view is thought to
+stay. Who went out of view is reckoned with for `memory_s`; what the sensors have seen to be free lately is left out for him by `stop_path`,
+which asks. Nothing is assumed of people who were never seen to walk.
 """
 
 from __future__ import annotations
@@ -12,10 +12,11 @@ import math
 import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan
+from pluto_bt.skills.approach import PERHAPS, SURELY
 from pluto_bt.skills.movers import Mask, Movers, came_closer
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.scans_before import ScansBefore
-from pluto_bt.skills.stop_path import STRANGER
+from pluto_bt.skills.stop_path import IN_VIEW, SPREAD_M, STRANGER, WALKER_COLUMNS
 from pluto_bt.skills.walker import BODY_M, IN_VIEW_S, Walker
 
 REACH_M = 6.0  # farther away, the beams are too far apart to tell
@@ -23,7 +24,8 @@ SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
 SURE = 2  # a single sighting may be a grazed edge
 MOST_WALKERS = 12
-SPREAD, IN_VIEW, COLUMNS = 4, 6, 7  # of a row
+PERHAPS_S = 1.0  # who is perhaps there is forgotten after so long, …
+OFTEN = 4  # … and surely there if he was heard so often meanwhile
 
 
 class WalkerWatch:
@@ -38,6 +40,8 @@ class WalkerWatch:
         self._movers = Movers()
         self._before = ScansBefore()
         self._walkers: list[Walker] = []
+        self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count only where others walk, …
+        self._about_s = -math.inf  # … or did so till now
         self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
@@ -57,8 +61,11 @@ class WalkerWatch:
         self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
-        """(n, 4) x m, y m, how far beside that he may be, and 1 = surely: who comes nearer, as `Approach` hears it."""
-        heard = [Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if is_sure else 1) for x, y, unsure_m, is_sure in places.tolist()]
+        """(n, 4) x m, y m, how far beside that he may be, and how well it is known: who comes nearer, as `Approach` hears it."""
+        heard: list[Walker] = []
+        for x, y, unsure_m, how in places.tolist():
+            one = Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if how == SURELY else 1)
+            (self._perhaps if how == PERHAPS else heard).append(one)
         seen = [one for one in self._walkers if one.unsure_m == 0.0 and stamp_s - one.walked_s <= IN_VIEW_S]
         self._meet([one for one in heard if not any(other.may_be(one) for other in seen)])  # the laser knows better where he is
 
@@ -67,10 +74,14 @@ class WalkerWatch:
         self._doubted_s = stamp_s
 
     def rows(self, now_s: float) -> Array:
-        """(n, COLUMNS) of all who are known about; see `Walker.row`."""
+        """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
-        sure = [one.row(now_s) for one in self._walkers if one.times >= SURE]
-        return np.array(sure) if sure else NOBODY
+        self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
+        is_one_sure = any(one.times >= SURE for one in self._walkers) or len(self._perhaps) >= OFTEN
+        if is_one_sure or (self._perhaps and now_s - self._about_s < PERHAPS_S):
+            self._about_s = now_s
+            return np.array([one.row(now_s) for one in (*self._walkers, *self._perhaps)])  # where one walks, less is enough to believe in another
+        return NOBODY
 
     def is_anybody_about(self, now_s: float) -> bool:
         """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
@@ -82,7 +93,7 @@ class WalkerWatch:
         if not len(rows):
             return NO_BODY
         seen = rows[rows[:, IN_VIEW] == 1.0]
-        return np.column_stack((seen[:, :2], seen[:, SPREAD] + 2.0 * BODY_M))
+        return np.column_stack((seen[:, :2], seen[:, SPREAD_M] + 2.0 * BODY_M))
 
     def _meet(self, seen: list[Walker]) -> None:
         """Who of the known ones was seen again, and who is new."""
@@ -115,6 +126,6 @@ def _apart(seen: list[Walker]) -> list[Walker]:
     return kept
 
 
-NOBODY: Array = np.zeros((0, COLUMNS))
+NOBODY: Array = np.zeros((0, WALKER_COLUMNS))
 ANYWHERE: Array = np.array([[0.0, 0.0, 0.0, 0.0, 1e6, 0.0, STRANGER]])  # somebody out of view, nobody knows where
 NO_BODY: Array = np.zeros((0, 3))

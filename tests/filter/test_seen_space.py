@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.outline import outline_of
-from pluto_bt.skills.seen_kernels import CAME, CELL_M, LEVEL, LOW, NEVER, SUDDEN
+from pluto_bt.skills.seen_kernels import CAME, CELL_M, LEVEL, LOW, NEVER, SUDDEN, UNKNOWN
 from pluto_bt.skills.seen_space import SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, WALKER, first_trouble, rim_of
@@ -124,7 +124,7 @@ def test_an_echo_where_all_was_free_came_and_one_near_the_robot_is_sudden_till_i
     one, near, far = space(), np.full(16, 5.0), np.full(16, 5.0)
     near[3] = near[4] = 0.6
     far[10:13] = 1.2
-    assert hear(one, near)[0][3] == SUDDEN and hear(one, near, since_s=8.0)[2][3] == 0
+    assert hear(one, near)[0][3] == SUDDEN and hear(one, near, since_s=8.0)[2][3] == UNKNOWN
     for k, theta_rad in enumerate((-0.2, 0.2, 0.0)):
         hear(one, np.full(16, 5.0), 3, 8.7 + 0.3 * k, 0.1, theta_rad)
     assert CAME in hear(one, far, 1, 9.6, 0.1)[0][10:13]
@@ -215,7 +215,8 @@ def test_into_what_was_never_seen_only_creeping(name: str, now: tuple[float, flo
     ("name", "told", "walker", "fresh_since_s", "code"),
     [
         ("in view, he comes towards the front", (0.5, 0.0), Walker(1.3, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
-        ("in view, he goes away", (0.5, 0.0), Walker(1.5, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
+        ("in view, he goes away, and may turn on his heel", (0.5, 0.0), Walker(1.1, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, WALKER),
+        ("in view, he is so far that he may do so", (0.5, 0.0), Walker(2.2, 0.0, 1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
         ("in view, he is too far to get here", (0.5, 0.0), Walker(4.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
         ("creeping is no collision", (0.04, 0.0), Walker(1.0, 0.0, -1.0, 0.0, 0.0, -0.3, -0.3), 0.0, CLEAR),
         ("out of view, and the ground was just seen to be free", (0.0, 0.5), Walker(-1.0, -1.5, 0.0, 1.0, 0.0, -3.0, -3.0, 2, 1.0), 0.0, CLEAR),

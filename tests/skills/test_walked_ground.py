@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
@@ -12,7 +13,7 @@ from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
-from pluto_bt.skills.walked_ground import MEMORY_S, WalkedGround
+from pluto_bt.skills.walked_ground import LONGEST_S, MEMORY_S, WalkedGround
 from pluto_bt.skills.ways import Ways
 from tests.chain.robots import ATRV2
 
@@ -67,9 +68,28 @@ def test_a_post_in_the_doorway_is_nobody() -> None:
     assert not len(walked.places(LOOKED_S))
 
 
-def test_who_is_gone_is_forgotten_after_a_while() -> None:
+def test_who_is_gone_is_forgotten_after_the_laser_looked_in_vain_for_a_while() -> None:
     _, walked = watched(0.5)
-    assert len(walked.places(LOOKED_S + MEMORY_S - 5.0)) and not len(walked.places(LOOKED_S + MEMORY_S))
+    noise, now_s = np.random.default_rng(6), LOOKED_S
+    for _ in range(round((MEMORY_S - 5.0) / SCAN_S)):
+        walked.take(scan_of(HALL, HERE, now_s, noise), HERE)
+        now_s += SCAN_S
+    assert len(walked.places(now_s))
+    for _ in range(round(6.0 / SCAN_S)):
+        walked.take(scan_of(HALL, HERE, now_s, noise), HERE)
+        now_s += SCAN_S
+    assert not len(walked.places(now_s))
+
+
+@pytest.mark.parametrize(("laser", "others"), [(BACK, ()), (HERE, (wall("screen", (2.0, -3.0), (2.0, 3.0)),))], ids=["away", "hidden"])
+def test_while_nobody_sees_the_place_he_may_walk_there_still(laser: Planar, others: tuple[Shape, ...]) -> None:
+    _, walked = watched(0.5)
+    noise, now_s = np.random.default_rng(7), LOOKED_S
+    for _ in range(round(2.0 * MEMORY_S / SCAN_S)):
+        walked.take(scan_of((*HALL, *others), laser, now_s, noise), laser)
+        now_s += SCAN_S
+    assert len(walked.places(now_s)) and not len(walked.places(now_s, MEMORY_S)), "but not that he did so lately"
+    assert not len(walked.places(LOOKED_S + LONGEST_S))
 
 
 def test_what_a_scan_that_looks_down_finds_where_somebody_walks_are_his_feet() -> None:

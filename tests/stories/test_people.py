@@ -52,6 +52,16 @@ def test_the_laser_sees_who_comes_from_ahead_and_the_goal_is_reached_behind_him(
     assert one.runner.result.result == "SUCCESS", one.runner.result.text
 
 
+ON_HIS_HEEL = [(2.38, 0.0, 3.3, 1.1), (2.38, -0.8, 2.4, 0.8), (2.88, 0.4, 4.8, 1.1), (3.38, 0.0, 5.5, 1.1)]
+
+
+@pytest.mark.parametrize(("x_m", "y_m", "comes_from_m", "speed_mps"), ON_HIS_HEEL)
+def test_who_crosses_the_way_may_turn_on_his_heel_and_come(x_m: float, y_m: float, comes_from_m: float, speed_mps: float) -> None:
+    """He is seen all the time, and turns towards the robot when it is at full speed a metre away. It brakes with 0.5 m/s² only."""
+    one = among("pioneer", (6.0, 0.0), speed_mps, [(x_m, comes_from_m), (x_m, y_m), (x_m - 3.0, -0.2), (-6.0, -6.0)], 12.0)
+    assert touches(one) == []
+
+
 def test_when_everybody_is_gone_it_drives_as_ever() -> None:
     alone = among("atrv2", (5.0, 5.0), 1.0, [(8.0, -8.0), (8.0, -8.5)])
     passed = among("atrv2", (5.0, 5.0), 1.2, [(2.5, -2.0), (2.5, -8.5)])
@@ -66,7 +76,7 @@ DOOR = """<world name="door"><wall id="hall">-2,-3 14,-3 14,3 -2,3 -2,-3</wall>
 TO_THE_OTHER_SIDE = '<root BTCPP_format="4"><BehaviorTree ID="M"><MoveTo goal="12;0" timeout_s="200"/></BehaviorTree></root>'
 
 
-WHERE_AND_HOW_FAST = [("atrv2", 9.0, 0.7), ("pioneer", 4.2, 0.8), ("pioneer", 6.2, 0.5)]
+WHERE_AND_HOW_FAST = [("atrv2", 4.2, 0.5), ("atrv2", 9.0, 0.7), ("pioneer", 4.2, 0.8), ("pioneer", 6.2, 0.5)]
 
 
 @pytest.mark.parametrize(("platform", "away_m", "speed_mps"), WHERE_AND_HOW_FAST)
