@@ -10,6 +10,7 @@ from pluto_bt.blackboard import TOPICS, Blackboard, Sample
 from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.record.box import Box
 from pluto_bt.trees.contracts import Contract, ContractWatch, Kept
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.scopes import Board
 
 TOPIC_NAME = re.compile(r"@([A-Za-z_][\w/-]*)")
@@ -18,7 +19,7 @@ TOPIC_NAME = re.compile(r"@([A-Za-z_][\w/-]*)")
 def check_box(box: Box, contracts: list[Contract]) -> list[Kept]:
     """How each contract stood in the run, tick by tick; a topic that was only thinned is seen as it was recorded."""
     replayed = _Replayed(box, contracts)
-    watch = ContractWatch(contracts, replayed.board.root)
+    watch = ContractWatch(contracts, replayed.board.root, plugin_enums())
     for now_s in replayed.ticks():
         watch.look(now_s)
     return watch.kept

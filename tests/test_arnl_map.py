@@ -88,6 +88,24 @@ def test_points_become_cells(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
+    ("corners", "origin", "size_m"),
+    [
+        ("", (0.0, 0.0), (10.05, 8.05)),
+        ("MinPos: -1000 -500\nMaxPos: 11000 7000\n", (-1.0, -0.5), (12.05, 8.55)),
+        ("LineMaxPos: 10000 9000\n", (0.0, 0.0), (10.05, 9.05)),
+    ],
+)
+def test_points_in_a_room_of_lines_do_not_make_the_map_smaller(
+    tmp_path: Path, corners: str, origin: tuple[float, float], size_m: tuple[float, float]
+) -> None:
+    room = "LINES\n0 0 10000 0\n10000 0 10000 8000\n10000 8000 0 8000\n0 8000 0 0\nDATA\n2000 2000\n2050 2000\n"
+    grid = world_of(tmp_path, f"2D-Map\n{corners}{room}").grid
+    assert grid is not None and np.allclose(grid.origin[:2], origin)
+    assert np.allclose(np.array(grid.occupied.shape[::-1]) * grid.resolution_m, size_m)
+    assert np.argwhere(grid.occupied).size == 4, "two points, and the lines are walls"
+
+
+@pytest.mark.parametrize(
     ("name", "lines", "home", "bounds"),
     [
         ("office", 101, (1.0, 1.498, 0.0), (0, 0, 18.76, 14.0)),
@@ -112,8 +130,9 @@ def test_real_maps(name: str, lines: int, home: tuple[float, float, float], boun
         ("1000 900\n1001", "1000 9OO\n1001", 25, 1, "bad-number", "this is no row of DATA"),
         ("1001 901", "1001", 26, 1, "bad-number", "this is no row of DATA"),
         ("1001 901", "1e300 901", 24, 1, "bad-number", "a coordinate is out of range"),
-        ("1001 901", "900000000 900000000", 1, 1, "too-large", "the points lie too far apart"),
+        ("1001 901", "900000000 900000000", 1, 1, "too-large", "what the map holds lies too far apart"),
         ("NumLines: 2", "NumLines: two", 9, 1, "bad-number", "NumLines must be a whole number"),
+        ("MinPos: -100 -60", "MinPos: -1e300 -60", 2, 1, "bad-number", "a coordinate is out of range"),
         ("MinPos: -100 -60", "MinPos: -100", 2, 1, "bad-number", "MinPos needs two numbers"),
         ("Resolution: 20", "Resolution: 0", 6, 1, "bad-number", "Resolution must be a number greater than 0"),
         ("PointsAreSorted: true", "Points are sorted", 5, 1, "bad-line", "this line is not understood"),

@@ -52,6 +52,24 @@ def test_a_new_mission_runs_as_it_is_and_with_another_place(capsys: pytest.Captu
     assert 'input "place" is declared as point; "door" is none' in capsys.readouterr().out
 
 
+UNUSABLE = ["mission GoTo", "leaf GoTo", "leaf go_to", "mission Sequence", "leaf Say", "mission root", "mission nowhere/errand"]
+
+
+@pytest.mark.parametrize("words", UNUSABLE)
+def test_a_new_file_that_could_not_be_used_is_not_written(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", *words.split()]) == 2
+    assert "nothing was written" in capsys.readouterr().err and list(Path().iterdir()) == []
+
+
+@pytest.mark.parametrize(("words", "written"), [("mission ../a/errand", "errand.xml"), ("leaf ../a/BatteryLow", "battery_low.py")])
+def test_a_new_file_is_written_where_its_name_says(words: str, written: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    monkeypatch.chdir(tmp_path / "b")
+    assert main(["new", *words.split()]) == 0
+    assert (tmp_path / "a" / written).is_file() and list(Path().iterdir()) == []
+
+
 def test_a_patrol_of_two_rounds_counts_its_goals_and_keeps_its_inputs(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "patrol.xml", "--port", "goals=4,3.5;2,3.5", "--port", "rounds=2", "--json"]) == 0
     board = json.loads(capsys.readouterr().out.splitlines()[-1])["blackboard"]

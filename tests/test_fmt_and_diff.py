@@ -82,6 +82,20 @@ def test_attributes_fill_lines_under_one_another_in_their_order() -> None:
     assert " ".join(" ".join(lines).split()) == f"<Node {ports}/>"
 
 
+RUNNING_TEXT = [
+    # as it is written                                         as it stays
+    ("<d>Text of <b>x</b>\n   more</d>", "<d>Text of <b>x</b>\n   more</d>"),
+    ("<d><b  k='1'/>, then &lt; <i>y <u/> z</i><!-- c --> </d>", '<d><b k="1"/>, then &lt; <i>y <u/> z</i><!-- c --></d>'),
+    ("<d>\n  first\n  <b/>\n  then\n</d>", "<d>\n    first\n    <b/>\n    then\n  </d>"),
+]
+
+
+@pytest.mark.parametrize(("text", "stays"), RUNNING_TEXT)
+def test_markup_in_the_midst_of_a_line_of_text_stays_there(text: str, stays: str) -> None:
+    assert formatted(f"<a>{text}</a>") == f"<a>\n  {stays}\n</a>\n"
+    assert formatted(formatted(f"<a>{text}</a>")) == formatted(f"<a>{text}</a>")
+
+
 def test_a_formatted_mission_runs_as_before() -> None:
     one, two = (load_mission(text) for text in (CARELESS, CANONICAL))
     assert one.tick_once() == two.tick_once()

@@ -167,6 +167,7 @@ BAD = [
     ('<goal id="a" x="0" y="0"/><goal id="a" x="0" y="0"/>', 2, 37, "duplicate-id", 'the id "a" stands twice', True),
     ('<marker id="1" x="0" y="0"/><marker id="1" x="0" y="0"/>', 2, 41, "duplicate-id", 'the id "1" stands twice', True),
     ('<marker id="-1" x="0" y="0"/>', 2, 13, "bad-value", 'attribute "id" must be a whole number', True),
+    ('<home x="0" y="0"/>\n<home x="0" y="0" theta_deg="9"/>', 3, 1, "duplicate-element", "a second <home>", False),
     ('<robot x="0" y="0"/>\n<robot x="0" y="0"/>', 3, 1, "duplicate-element", "a second <robot>", False),
     ('<robot x="0"/>', 2, 1, "missing-attribute", '<robot> needs the attribute "y"', False),
     ('<terrain id="a" slip="1.5">0,0 3,0 1,1</terrain>', 2, 23, "bad-value", 'attribute "slip" must be from 0 to 1', True),

@@ -58,7 +58,7 @@ REASONS: Final[dict[str, Reason]] = {
     "stuck": Reason("the robot gets no farther towards its goal or along its wall", "choose a goal with a clear way, or free it by hand"),
     "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near"),
     "tilted": Reason("the robot leans farther than the platform allows", "bring it to level ground"),
-    "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or a nearer goal"),
+    "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or see in the message what it waited for"),
     "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
     "wall-lost": Reason("the wall that was followed is not there any more", "look what became of it, then start again near a wall"),
     "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass"),

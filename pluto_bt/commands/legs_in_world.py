@@ -105,7 +105,7 @@ class LegCheck:
         if not self._area.has_point(*goal):
             self._error(leg, "outside-map", f"goal {shown} is outside the mapped area", "a goal inside", shown)
             return False
-        if self._is_off_the_map(goal):
+        if self._is_off_the_map(leg, goal):
             self._error(leg, "outside-map", f"goal {shown} is beyond the edge of the map", "a goal on the map", shown)
             return False
         at = _short_of(start, goal, leg.tolerance_m)
@@ -118,10 +118,10 @@ class LegCheck:
                 return False
         return True
 
-    def _is_off_the_map(self, goal: Point) -> bool:
+    def _is_off_the_map(self, leg: Leg, goal: Point) -> bool:
         grid = self._world.grid
-        if grid is None or self._world.shapes:
-            return False  # what stands around the grid may be part of the world too
+        if grid is None or (self._world.shapes and leg.way != "planned"):
+            return False  # what stands around the grid may be part of the world too, but the planner knows the grid alone
         x, y, theta = grid.origin
         cos, sin = math.cos(theta), math.sin(theta)
         across, up = (goal[0] - x) * cos + (goal[1] - y) * sin, -(goal[0] - x) * sin + (goal[1] - y) * cos

@@ -59,23 +59,38 @@ class {name}(BehaviourWithPorts):
 
 
 def main(argv: list[str]) -> int:
-    """Write `NAME.xml` or `NAME.py` into the working folder; never over an existing file."""
+    """Write `NAME.xml` or `NAME.py`, into the folder that NAME begins with, else the working folder; never over an existing file."""
     parser = Parser(prog="pluto new", description="Write a first mission or leaf to start from.")
     parser.add_argument("kind", choices=("mission", "leaf"))
     parser.add_argument("name", metavar="NAME")
     args = parser.parse_args(argv)
-    stem = Path(args.name).stem
-    if not re.fullmatch(r"[A-Za-z_]\w*", stem):
-        print(f'pluto new: "{args.name}" is no name; a letter first, then letters, digits and _', file=sys.stderr)
-        return 2
-    path = Path(f"{stem}.xml") if args.kind == "mission" else Path(f"{_snake(stem)}.py")
-    if path.exists():
-        print(f"pluto new: {path} exists already; nothing was written", file=sys.stderr)
+    folder, stem = Path(args.name).parent, Path(args.name).stem
+    path = folder / (f"{stem}.xml" if args.kind == "mission" else f"{_snake(stem)}.py")
+    problem = _problem(args.name, stem, stem if args.kind == "mission" else _camel(stem), path)
+    if problem:
+        print(f"pluto new: {problem}; nothing was written", file=sys.stderr)
         return 2
     text = MISSION.format(name=stem, file=path) if args.kind == "mission" else LEAF.format(name=_camel(stem), module=path.stem)
     path.write_text(text, encoding="utf-8")
-    print(f"wrote {path}\ntry: pluto run {path}" if args.kind == "mission" else f"wrote {path}\ntry: pluto run MISSION.xml --plugin {path.stem}")
+    there = "" if folder == Path() else f" (in {folder})"  # where --plugin finds it
+    next_step = f"try: pluto run {path}" if args.kind == "mission" else f"try{there}: pluto run MISSION.xml --plugin {path.stem}"
+    print(f"wrote {path}\n{next_step}")
     return 0
+
+
+def _problem(given: str, stem: str, node_name: str, path: Path) -> str:
+    """Why nothing can be made of the name, or ""."""
+    from pluto_bt.trees.loader.registry import name_problem, node_types  # heavy
+
+    if not re.fullmatch(r"[A-Za-z_]\w*", stem):
+        return f'"{given}" is no name; a letter first, then letters, digits and _'
+    if name_problem(node_name):
+        return f'"{node_name}" cannot be a name: {name_problem(node_name)}'
+    if node_name in node_types():
+        return f'"{node_name}" is the name of a node of pluto_bt; choose another, for example My{node_name}'
+    if not path.parent.is_dir():
+        return f"there is no folder {path.parent}"
+    return f"{path} exists already" if path.exists() else ""
 
 
 def _snake(name: str) -> str:

@@ -117,9 +117,11 @@ def execute(box: Box, mission: Path | None) -> int:
 
 def contracts(box: Box, mission: Path | None) -> int:
     """The contracts over the run."""
+    from pluto_bt.commands.plugins import load_plugins
     from pluto_bt.contract_report import check_box
     from pluto_bt.trees.loader.contracts import contracts_in
 
+    load_plugins(box.run.plugins, Faults())  # for their enums; a contract that lacks one says so
     with box.unpacked() as files:
         shown = box.run.mission if mission is None else str(mission)
         found = contracts_in(mission or files / box.run.mission, shown)

@@ -47,7 +47,7 @@ def _check_faults(world: World, robot: RobotFile, faults: Faults) -> None:
         names = ("imu", "dmu") if action.device == "imu" else (action.device,)
         if all(getattr(robot.devices, name) is None for name in names):
             what = f'this fault changes nothing: "{robot.name}" has no {action.device}'
-            faults.warning(action.place, "no-device", what, expected=f"a robot that has {action.device}", found=robot.name)
+            faults.warning(action.place, "no-device", what, expected="a robot that has it", found=robot.name)
         elif action.beams is not None and action.beams[1] >= (count := _rays(robot, action.device)):
             what, found = f"the {action.device} has {count} beams", f"{action.beams[0]}-{action.beams[1]}"
             faults.warning(action.place, "no-beam", what, expected=f"beams from 0 to {count - 1}", found=found)

@@ -1,8 +1,8 @@
 """ARNL / ARIA maps (`2D-Map`): millimetres and degrees in the file, metres and radians here.
 
-LINES become walls. DATA, the points a laser left (up to some 10⁵), become occupied cells of 0.05 m. `Cairn:` objects become goals,
-home, lines and areas (`arnl_cairns`). Source of the format: ARIA reference manual, page "Map File Format"; a name before `_LINES` or
-`_DATA` is a further sensor.
+LINES become walls. DATA, the points a laser left (up to some 10⁵), become occupied cells of 0.05 m, in a grid that goes as far as points,
+lines and the corners that the map names (`MinPos` … `LineMaxPos`) go together. `Cairn:` objects become goals, home, lines and areas
+(`arnl_cairns`). Source of the format: ARIA reference manual, page "Map File Format"; a name before `_LINES` or `_DATA` is a further sensor.
 """
 
 from __future__ import annotations
@@ -56,6 +56,7 @@ class _ArnlReading:
         self._cairns = Cairns(source, faults)
         self._rows: dict[str, list[NDArray[np.float64]]] = {"LINES": [], "DATA": []}
         self._row_offsets: list[int] = []  # where each row of LINES begins
+        self._corners: list[list[float]] = []  # (x, y) mm that the map says it goes to
         self._claimed: dict[str, list[tuple[int, int]]] = {"LINES": [], "DATA": []}  # (count, offset) of Num…:
         self._section = ""
         self._sections_seen = 0
@@ -143,10 +144,19 @@ class _ArnlReading:
             self._cairns.define(rest)
         elif count := next((name for name in _COUNTS if key.endswith(name)), None):
             self._claim(_COUNTS[count], key, rest.strip(), at)
-        elif any(key.endswith(name) for name in _PAIRS) and len(self._numbers(rest)) != 2:
-            self._error(at, "bad-number", f"{key} needs two numbers", f"{key}: x y", rest.strip() or "nothing")
+        elif any(key.endswith(name) for name in _PAIRS):
+            self._corner(key, rest.strip(), at)
         elif key.endswith("Resolution") and not (len(self._numbers(rest)) == 1 and self._numbers(rest)[0] > 0):
             self._error(at, "bad-number", f"{key} must be a number greater than 0", f"{key}: millimetres", rest.strip() or "nothing")
+
+    def _corner(self, key: str, words: str, at: int) -> None:
+        corner = self._numbers(words)
+        if len(corner) != 2:
+            self._error(at, "bad-number", f"{key} needs two numbers", f"{key}: x y", words or "nothing")
+        elif not max(map(abs, corner)) <= MAX_MM:
+            self._error(at, "bad-number", "a coordinate is out of range", f"at most {MAX_MM:g} mm", words)
+        else:
+            self._corners.append(corner)
 
     def _claim(self, section: str, key: str, count: str, at: int) -> None:
         if re.fullmatch(r"[0-9]{1,9}", count):
@@ -177,12 +187,14 @@ class _ArnlReading:
         """The points as cells; nothing is unknown, since the map does not say where the laser looked."""
         if not self._rows["DATA"]:
             return None
-        cell = np.floor(np.vstack(self._rows["DATA"]) / (1000.0 * CELL_M)).astype(np.int64)
-        low = cell.min(axis=0)
-        columns, rows = (int(n) for n in cell.max(axis=0) - low + 1)
+        cell = _cells(np.vstack(self._rows["DATA"]))
+        lines = [rows.reshape(-1, 2) for rows in self._rows["LINES"]]
+        reach = np.vstack((cell, *map(_cells, (*lines, np.reshape(self._corners, (-1, 2))))))
+        low = reach.min(axis=0)
+        columns, rows = (int(n) for n in reach.max(axis=0) - low + 1)
         if columns * rows > MAX_CELLS:
             size = f"{columns * CELL_M:g} x {rows * CELL_M:g} m"
-            self._error(0, "too-large", "the points lie too far apart", f"an area of at most {MAX_CELLS * CELL_M * CELL_M:g} m²", size)
+            self._error(0, "too-large", "what the map holds lies too far apart", f"an area of at most {MAX_CELLS * CELL_M * CELL_M:g} m²", size)
             return None
         occupied, unknown = np.zeros((rows, columns), np.uint8), np.zeros((rows, columns), np.uint8)
         occupied[cell[:, 1] - low[1], cell[:, 0] - low[0]] = 1
@@ -193,3 +205,8 @@ class _ArnlReading:
     def _error(self, at: int, code: str, message: str, expected: str, found: str, mend: str = "") -> None:
         self._errors += 1
         self._faults.error(self._source.place(at), code, message, expected=expected, found=found[:60], mend=mend)
+
+
+def _cells(points_mm: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(column, row) of the cells, counted from the map's origin, in which points (n, 2) lie."""
+    return np.floor(points_mm / (1000.0 * CELL_M)).astype(np.int64)

@@ -111,8 +111,9 @@ class _WorldReading:
             self._ids.take_all("goal", ((goal.id, goal.place) for goal in base.goals))
 
     def _home(self, fields: Fields) -> None:
-        if not self._is_second(fields):
-            self._found.home = self._goal_at("home", fields)
+        second, home = self._is_second(fields), self._goal_at("home", fields)
+        if not second:
+            self._found.home = home
         fields.done()
 
     def _robot(self, fields: Fields) -> None:

@@ -1,13 +1,15 @@
 """One canonical form for every XML file: two blanks a level, attributes in their order, filled up to a width; comments stay where they stand.
 
 Writing keeps all that reading knows: elements, attributes and their order, values to the character, texts without the blanks around them,
-comments, processing instructions, one blank line where there were some. What is written reads as what was read, and written again is equal.
+comments, processing instructions, one blank line where there were some. Elements that stand in the midst of a line of text, as `<b>` in a
+description, stay there with their text. What is written reads as what was read, and written again is equal.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 from pluto_bt.source.text import SourceText
@@ -57,9 +59,12 @@ class _Writer:
 
     def _add_element(self, element: XmlElement, level: int) -> None:
         head = _start_tag(element, INDENT * level)
-        items = _items_of(element)
+        content = _content_of(element)
+        items = _stripped(content)
         if not items:
             self.lines += (head + "/>").split("\n")
+        elif _is_running_text(content):
+            self.lines += f"{head}>{_as_running_text(content).strip()}</{element.tag}>".split("\n")
         elif len(items) == 1 and isinstance(items[0], _Text):
             self.lines += f"{head}>{escaped_text(items[0].text)}</{element.tag}>".split("\n")
         else:
@@ -73,9 +78,8 @@ class _Writer:
         if not is_trailing:
             self._add_blank_line(comment.start, is_first)
         start = self.lines.pop() + " " if is_trailing else INDENT * level
-        text = f"<?{comment.text}?>" if comment.is_instruction else f"<!--{comment.text}-->"
         was_at = comment.start - (self._source.rfind("\n", 0, comment.start) + 1)
-        first, *more = text.split("\n")
+        first, *more = _comment(comment).split("\n")
         self.lines += [start + first, *(_shifted(line, len(start) - was_at) for line in more)]
 
     def _stands_behind_something(self, start: int) -> bool:
@@ -94,8 +98,8 @@ class _Writer:
             self.lines.append("")
 
 
-def _items_of(element: XmlElement) -> list[XmlElement | XmlComment | _Text]:
-    """Children, comments and texts in the order of the source."""
+def _content_of(element: XmlElement) -> list[XmlElement | XmlComment | _Text]:
+    """Children, comments and texts, with the blanks around them, in the order of the source."""
     marks: list[XmlElement | XmlComment] = sorted([*element.children, *element.comments], key=lambda item: item.start)
     found: list[XmlElement | XmlComment | _Text] = []
     runs = [*element.text_runs, (len(element.text), len(element.source.text) + 1)]
@@ -107,13 +111,47 @@ def _items_of(element: XmlElement) -> list[XmlElement | XmlComment | _Text]:
             first = first if pieces else runs[at][1]
             pieces.append(element.text[runs[at][0] : runs[at + 1][0]])
             at += 1
-        text = "".join(pieces).strip()
-        if text:
-            found.append(_Text(text, first))
+        if pieces:
+            found.append(_Text("".join(pieces), first))
         pieces.clear()
         if mark is not None:
             found.append(mark)
     return found
+
+
+def _stripped(content: Sequence[XmlElement | XmlComment | _Text]) -> list[XmlElement | XmlComment | _Text]:
+    """The same without the blanks around texts, and without texts of blanks alone."""
+    items = [_Text(item.text.strip(), item.start) if isinstance(item, _Text) else item for item in content]
+    return [item for item in items if not isinstance(item, _Text) or item.text]
+
+
+def _is_running_text(content: Sequence[XmlElement | XmlComment | _Text]) -> bool:
+    """True if a child stands in one line with text beside it, so that a new line between them would say something else."""
+    for before, after in pairwise(content):
+        text, child = (before, after) if isinstance(before, _Text) else (after, before)
+        if isinstance(text, _Text) and isinstance(child, XmlElement) and (bare := text.text.strip()):
+            edges = text.text.split(bare)
+            if "\n" not in edges[-1 if text is before else 0]:
+                return True
+    return False
+
+
+def _as_running_text(content: Sequence[XmlElement | XmlComment | _Text]) -> str:
+    """Content as it stands, to the blank."""
+    shown = ""
+    for item in content:
+        if isinstance(item, _Text):
+            shown += escaped_text(item.text)
+        elif isinstance(item, XmlComment):
+            shown += _comment(item)
+        else:
+            tag, inside = " ".join([item.tag, *(f'{one.name}="{_value(one)}"' for one in item.attributes.values())]), _content_of(item)
+            shown += f"<{tag}>{_as_running_text(inside)}</{item.tag}>" if inside else f"<{tag}/>"
+    return shown
+
+
+def _comment(comment: XmlComment) -> str:
+    return f"<?{comment.text}?>" if comment.is_instruction else f"<!--{comment.text}-->"
 
 
 def _start_tag(element: XmlElement, indent: str) -> str:

@@ -5,6 +5,8 @@
     │   └── MissionError     the file cannot be loaded; `.faults` has every fault
     ├── TickError            a node broke its promise while ticking; the tree has been halted
     └── StepError            inside the engine only: which node it was; the mission turns it into a TickError
+
+A leaf that reads or writes a port meets a PortMisfit, which is a TypeError, as py_trees' own ports would raise it.
 """
 
 from __future__ import annotations
@@ -33,6 +35,10 @@ class TickError(PlutoError):
         self.path, self.type, self.file, self.line, self.reason = path, type_name, file, line, reason
         where = f" at {file or '<text>'}:{line}" if line else ""
         super().__init__(f"node {path!r} ({type_name}){where}: {reason}")
+
+
+class PortMisfit(TypeError):  # noqa: N818  a leaf of py_trees expects a TypeError; the text is a sentence for people
+    """The value of a port does not fit its type."""
 
 
 class StepError(PlutoError):

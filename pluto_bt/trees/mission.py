@@ -16,6 +16,7 @@ from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.leaf import told
 from pluto_bt.trees.engine.node import reset
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SUCCESS, Result, name_of
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.errors import RAISED, StepError, TickError
 from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
@@ -206,7 +207,7 @@ class Mission:
 
     def contract_watch(self) -> ContractWatch | None:
         """A watch over its contracts; None if it has none."""
-        return ContractWatch(self.contracts, self._board.root) if self.contracts else None
+        return ContractWatch(self.contracts, self._board.root, plugin_enums()) if self.contracts else None
 
     def nodes(self) -> list[Tracked]:
         """Every node with its plan, depth first; for dumps and checks."""

@@ -134,7 +134,7 @@ def _own_text(data_type: Any) -> Kind:
             return from_value(value)
         if isinstance(value, (int, float, tuple)):
             return parse(";".join(map(str, value)) if isinstance(value, tuple) else str(value))
-        raise ValueError(f"expected a {data_type.__name__}")
+        raise ValueError(f"expected {_a(data_type.__name__)}")
 
     def parse(text: str) -> Any:
         try:
@@ -142,8 +142,12 @@ def _own_text(data_type: Any) -> Kind:
         except Exception as error:  # a user's reader may raise anything
             raise ValueError(str(error) or type(error).__name__) from None
 
-    form = getattr(data_type, "TEXT_FORM", f"a {data_type.__name__}")
+    form = getattr(data_type, "TEXT_FORM", _a(data_type.__name__))
     return Kind(data_type.__name__, form, parse, cast, data_type, typed=not getattr(data_type, "ANY_ENTRY", False))
+
+
+def _a(word: str) -> str:
+    return f"{'an' if word[:1].lower() in 'aeiou' else 'a'} {word}"
 
 
 def _only_objects(data_type: Any) -> Kind:
@@ -155,7 +159,7 @@ def _only_objects(data_type: Any) -> Kind:
 
     def cast(value: Any) -> Any:
         if isinstance(wanted, type) and not isinstance(value, wanted):
-            raise ValueError(f"expected a {name}")
+            raise ValueError(f"expected {_a(name)}")
         return value
 
     return Kind(name, "{key}", parse, cast, wanted if isinstance(wanted, type) else None)

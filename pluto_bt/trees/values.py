@@ -25,6 +25,7 @@ REAL = re.compile(r"-?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|inf(?:inity)?)", r
 
 
 REALS: Final = ("double", "float")  # types of a model that take digits for a real number
+TEXTS: Final = ("string", "std::string")  # … and for text
 
 
 class PortProblem(Exception):  # noqa: N818  it is no error of the program; it becomes a StepError or a fault with a place
@@ -124,7 +125,9 @@ def literal_value(text: str) -> int | float | str:
 
 
 def declared_value(text: str, type_name: str) -> int | float | str:
-    """`literal_value`, but that digits are a real number where a model declares one (`type_name`)."""
+    """`literal_value`, but that digits are a real number or a text where a model declares one (`type_name`)."""
+    if type_name in TEXTS:
+        return text
     value = literal_value(text)
     return float(value) if type_name in REALS and isinstance(value, int) else value
 

@@ -15,14 +15,16 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 from pluto_bt.behaviours.catalogue import LEAVES
+from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.blackboard import messages as m
 from pluto_bt.gateway.port import RunState
 from pluto_bt.gateway.shell.main import main
 from pluto_bt.gateway.shell.table import ROWS, SUBSHELLS, help_text
-from pluto_bt.gateway.shell.telling import as_json
+from pluto_bt.gateway.shell.telling import as_json, brief
 from pluto_bt.gateway.words import said_by
 
 from .conftest import Running
@@ -103,6 +105,22 @@ def test_a_driving_command_runs_one_node_of_the_library(running: Running, line: 
 def test_a_failed_run_tells_reason_and_outputs(running: Running) -> None:
     runs_end(running, RunState("failed", "stuck", "a wall is near", (("reason", "stuck"), ("path", "1,2;3,4"))))
     assert say(running, "goto", "3", "4") == (1, "failed: stuck: a wall is near\n  path = 1,2;3,4\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        (MapPath.along(np.column_stack((np.linspace(1.0, 8.0, 141), np.full(141, 2.0)))).to_text(), "1,2;1.05,2;…;8,2 (141 points)"),
+        (";".join(f"{i},{2 * i}" for i in range(99)), "0,0;1,2;…;98,196 (99 points)"),
+        ("a word;" * 40, f"{('a word;' * 40)[:160]}… (280 characters)"),
+        ("1;map" + ";1;map;where;2;0;0;0;0;1" * 20, f"1;map{';1;map;where;2;0;0;0;0;1' * 6}{';1;map;where'[:11]}… (485 characters)"),
+        (f"{'1' * 200},2", f"{'1' * 160}… (202 characters)"),
+        ("1,2;3,4;5,6", "1,2;3,4;5,6"),
+        ("", ""),
+    ],
+)
+def test_a_long_output_is_shortened_for_a_person(text: str, shown: str) -> None:
+    assert brief(text) == shown
 
 
 def test_goto_while_a_mission_runs_says_how_to_mend_it(running: Running) -> None:

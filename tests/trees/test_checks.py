@@ -107,6 +107,24 @@ def test_entries(body: str, more: str, faults: list[str]) -> None:
     assert told(body, more) == faults
 
 
+ALIASES = [
+    # the SubTree tags, outermost first                                   the entry, as it is read, and the tag that gives it its meaning
+    ('<SubTree ID="B" t="{q}"/>', '<Sleep msec="{t}"/>', 'nothing writes entry "q", which is read here as "t"', '<text>:2:17'),
+    ('<SubTree ID="B" t="{=}"/>', '<Sleep msec="{t}"/>', 'nothing writes entry "t", which is read here', '<text>:2:17'),
+    ('<Sequence><SubTree ID="B" t="{q}"/><Script code="q := 5"/></Sequence>', '<Sleep msec="{t}"/>',
+     'entry "q" is read here as "t" before anything can have written it', '<text>:2:27'),
+    ('<SubTree ID="B" u="{q}"/>', '<SubTree ID="C" t="{u}"/>', 'nothing writes entry "q", which is read here as "t"', '<text>:2:17'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("tag", "body", "message", "place"), ALIASES)
+def test_an_entry_that_a_subtree_tag_leads_to_is_told_by_its_own_name(tag: str, body: str, message: str, place: str) -> None:
+    faults = check_mission(mission(tag, tree("B", body) + tree("C", '<Sleep msec="{t}"/>')))
+    (fault,) = [fault for fault in faults if fault.code == "unset-key"]
+    assert fault.message == message and "give the tag a port" not in fault.mend
+    assert f"at {place} leads to it" in fault.found
+
+
 MENDS = [
     ('<Sequence><Script code="place := \'1;2\'"/><GoTo goal="{plce}"/></Sequence>', "", 'did you mean "place"?'),
     ('<ScriptCondition code="@Localization_Pose_q > 1"/>', "", 'did you mean "@Localization_Pose_'),
@@ -478,14 +496,15 @@ MAIN_INPUTS = """<root BTCPP_format="4" main_tree_to_execute="M"><BehaviorTree I
 
 @pytest.mark.parametrize(("ports", "code", "words"), [
     ({"plcae": "4;2"}, "unknown-input", 'did you mean "place"'),
-    ({"place": "4;x"}, "bad-input", "expected x;y"),
+    ({"place": "4;x"}, "bad-input", "x;y"),
     ({"place": "1e12;3"}, "bad-input", "beyond 1e+06 m"),
     ({"place": "4;2", "goals": ""}, "bad-input", "no element"),
     ({"place": "4;2", "goals": "1,2;1e7,2"}, "bad-input", "beyond 1e+06 m"),
 ])  # fmt: skip
 def test_one_slip_in_an_input_is_one_fault(ports: dict[str, str], code: str, words: str) -> None:
     (fault,) = check_mission(MAIN_INPUTS, ports=ports)
-    assert fault.code == code and fault.file.startswith("--port") and words in fault.mend
+    assert fault.code == code and fault.file.startswith("--port") and words in f"{fault.expected} {fault.mend}"
+    assert not fault.mend.startswith("expected")
     assert check_mission(MAIN_INPUTS, ports={"place": "4;2"}) == ()
 
 

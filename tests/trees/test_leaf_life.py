@@ -341,6 +341,32 @@ def test_a_tick_that_would_never_end_is_an_error() -> None:
         mission.tick_once()
 
 
+class NeedsAGoal(BehaviourWithPorts):
+    """Reads its port and is done."""
+
+    INPUT_PORTS: ClassVar = {"goal": Port(tuple[float, float])}
+    OUTPUT_PORTS: ClassVar = {}
+
+    def update(self) -> Status:
+        self.get_input("goal")
+        return Status.SUCCESS
+
+
+@pytest.mark.parametrize(
+    ("ports", "text"),
+    [
+        ('goal="{place}"', "port 'goal': 'door' is no point: expected x;y"),
+        ('goal="{nothing}"', 'port "goal" of "out" has no value: entry '),
+    ],
+)
+def test_a_port_that_cannot_be_read_is_told_without_words_of_python(ports: str, text: str) -> None:
+    text_of_mission = f'<root BTCPP_format="4"><BehaviorTree ID="A"><NeedsAGoal name="out" {ports}/></BehaviorTree></root>'
+    mission = load_mission(text_of_mission, nodes=[NeedsAGoal], clock=VirtualClock(), blackboard={"place": "door"})
+    with pytest.raises(TickError) as caught:
+        mission.tick_once()
+    assert caught.value.reason.startswith(text) and ".py:" not in caught.value.reason
+
+
 def test_an_input_without_value_fails_a_leaf_of_the_library_and_is_an_error_of_anybody_elses() -> None:
     class Theirs(BehaviourWithPorts, tag="Theirs"):
         INPUT_PORTS: ClassVar = {"text": Port(str, required=True)}

@@ -148,7 +148,7 @@ DOCUMENTS = [
      ['1:151 error missing-port: <SubTree ID="B"> needs port "n"']),
     ('<root BTCPP_format="4" main_tree_to_execute="A"><BehaviorTree ID="A"><Sequence><SubTree ID="B" name="x"/><SubTree ID="B" name="x"/></Sequence>'
      '</BehaviorTree><BehaviorTree ID="B"><AlwaysSuccess/></BehaviorTree></root>',
-     ["1:128 error duplicate-path: two SubTrees have the path 'x'; the other is at <text>:1"]),
+     ["1:128 error duplicate-path: two SubTrees have the path 'x'; the other is at <text>:1:80"]),
     ('<root BTCPP_format="4"><include/><BehaviorTree ID="A"><AlwaysSuccess/></BehaviorTree></root>',
      ["1:24 error missing-path: this include has no path"]),
     ('<root BTCPP_format="4"><include path="nowhere.xml"/></root>', ["1:39 error no-file: there is no file 'nowhere.xml'"]),
@@ -221,6 +221,19 @@ def test_the_including_file_wins_over_the_included_one(tmp_path: Path) -> None:
     (tmp_path / "lib.xml").write_text('<root BTCPP_format="4"><BehaviorTree ID="A"><AlwaysFailure/></BehaviorTree></root>')
     (tmp_path / "main.xml").write_text(f'<root BTCPP_format="4"><include path="lib.xml"/>{GOOD}</root>')
     assert load_mission(tmp_path / "main.xml").tick_once() == "SUCCESS"
+
+
+NEAR = 'did you mean "library.xml"?'
+
+
+@pytest.mark.parametrize(("path", "mend"), [("nofile.xml", ""), ("libary.xml", NEAR), ("LIBRARY.xml", NEAR)])
+def test_only_a_name_that_is_near_is_proposed_for_a_missing_include(tmp_path: Path, path: str, mend: str) -> None:
+    for name in ("old", "library", "uni"):
+        (tmp_path / f"{name}.xml").write_text(f'<root BTCPP_format="4">{GOOD}</root>')
+    (tmp_path / "main.xml").write_text(f'<root BTCPP_format="4"><include path="{path}"/>{GOOD}</root>')
+    with pytest.raises(MissionError) as caught:
+        load_mission(tmp_path / "main.xml")
+    assert [(fault.code, fault.mend) for fault in caught.value.faults if fault.severity == "error"] == [("no-file", mend)]
 
 
 def test_a_missing_file_is_a_fault() -> None:

@@ -6,8 +6,9 @@ from typing import Any
 
 import pytest
 
+from pluto_bt.runtime import VirtualClock
 from pluto_bt.source import Fault
-from pluto_bt.trees import MissionError, TickError, check_mission
+from pluto_bt.trees import MissionError, TickError, check_mission, load_mission
 from tests.trees.harness import Bench
 
 SCOPES = [
@@ -170,4 +171,27 @@ def test_digits_are_a_real_number_where_the_model_declares_one(declared: str) ->
 
 def test_a_clash_is_told_at_the_literal_that_makes_it() -> None:
     (fault,) = _faults_of_digits("")
-    assert (fault.line, fault.code) == (2, "type-clash") and "<text>:3 needs double" in fault.message and '"40.0"' in fault.mend
+    assert (fault.line, fault.code) == (2, "type-clash") and "<text>:3:42 needs double" in fault.message and '"40.0"' in fault.mend
+
+
+TOLD = """<BehaviorTree ID="B">
+  <Sequence><SetBlackboard value="{text}" output_key="@said"/><Say text="{text}"/></Sequence></BehaviorTree>"""
+
+
+def _text_mission(declared: str) -> str:
+    model = f'<SubTree ID="B"><input_port name="text" type="{declared}"/></SubTree><SubTree ID="A"><input_port name="m" type="{declared}"/></SubTree>'
+    main = '<BehaviorTree ID="A"><Sequence><SubTree ID="B" text="05"/>\n<SubTree ID="B" text="{m}"/></Sequence></BehaviorTree>\n'
+    return f'<root BTCPP_format="4" main_tree_to_execute="A">{main}{TOLD}<TreeNodesModel>{model if declared else ""}</TreeNodesModel></root>'
+
+
+@pytest.mark.parametrize("declared", ["string", "std::string"])
+def test_digits_are_text_where_the_model_declares_a_string(declared: str) -> None:
+    assert check_mission(_text_mission(declared), ports={"m": "042"}) == ()
+    mission = load_mission(_text_mission(declared), ports={"m": "042"}, clock=VirtualClock())
+    mission.tick_once()
+    assert mission.blackboard["said"] == "042"
+
+
+def test_who_gives_digits_to_a_text_is_told_how_they_become_text() -> None:
+    faults = [fault for fault in check_mission(_text_mission(""), ports={"m": "042"}) if fault.code == "type-clash"]
+    assert len(faults) == 2 and all('TreeNodesModel with type="string"' in fault.mend for fault in faults)

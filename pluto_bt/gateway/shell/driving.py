@@ -11,6 +11,7 @@ from pluto_bt.gateway.async_client import AsyncClient
 from pluto_bt.gateway.shell.codes import DONE, FAILED, UsageError
 from pluto_bt.gateway.shell.face import Face
 from pluto_bt.gateway.shell.robot import Robot
+from pluto_bt.gateway.shell.telling import brief
 from pluto_bt.gateway.words import RunResult
 
 TTL_S = 20.0  # of the run, which may be a hundred times as fast as we; a shell that dies is noticed by its connection, not by this
@@ -79,7 +80,7 @@ def tell_result(face: Face, result: RunResult) -> int:
     face.say(": ".join(filter(None, (result.state, "" if is_told else result.reason, result.text))))
     for name, value in result.outputs.items():
         if name != "reason":
-            face.say(f"  {name} = {value}")
+            face.say(f"  {name} = {brief(value)}")
     return DONE if result.is_success else FAILED
 
 

@@ -19,6 +19,8 @@ from pluto_bt.gateway.words import said_by
 
 _ROWS: dict[str, type[msgspec.Struct]] = {"node": NodeState, "module": ModuleState}
 LONG_LIST = 12  # numbers shown of a longer list
+LONG_TEXT = 160  # characters shown of a longer text
+POSE_PARTS = 9  # of a pose in the text of a path: stamp;frame;x;y;z and a quaternion; before them stand a stamp and a frame
 
 
 def event_line(event: Element) -> str:
@@ -57,6 +59,19 @@ def as_json(value: Element) -> str:
 def _kinds(topic: str) -> dict[str, str]:
     """Field → type; nothing of a topic that we do not know."""
     return {field["name"]: field["type"] for field in fields_of(TYPES[topic])} if topic in TYPES else {}
+
+
+def brief(text: str) -> str:
+    """An output of a node for a person: of a path its ends and how many points it has, of any other long text its beginning."""
+    if len(text) <= LONG_TEXT:
+        return text
+    parts = text.split(";")
+    is_path = len(parts) % POSE_PARTS == 2 and _number(parts[0]) is not None
+    pairs = list(zip(parts[4::POSE_PARTS], parts[5::POSE_PARTS], strict=True)) if is_path else [tuple(part.split(",")) for part in parts]
+    points = [f"{x:g},{y:g}" for pair in pairs if len(pair) == 2 and (x := _number(pair[0])) is not None and (y := _number(pair[1])) is not None]
+    if len(points) < max(3, len(pairs)):
+        return f"{text[:LONG_TEXT]}… ({len(text)} characters)"
+    return f"{points[0]};{points[1]};…;{points[-1]} ({len(points)} points)"
 
 
 def _short(words: list[str]) -> list[str]:

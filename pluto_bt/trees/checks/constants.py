@@ -16,6 +16,7 @@ from pluto_bt.trees.checks.entries import Home, Use, home_key, home_of, script_u
 from pluto_bt.trees.checks.flow import ONCE
 from pluto_bt.trees.checks.outcomes import PRE_CONDITIONS
 from pluto_bt.trees.engine.conditions import POST_CONDITIONS
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
@@ -42,6 +43,7 @@ class Constants:
         self._uses = uses
         self._own: dict[int, tuple[Home, ...]] = {}  # what each node itself writes, by id of the plan
         self._board, self._given, self._is_closed, self._report = board, given, is_closed, report
+        self._enums = plugin_enums()
         self._shadows = Board()  # owns what stands for the mission's entries here
         self._entries: dict[Home, Entry | None] = {}  # as they are at the node that is looked at; None = not known
         self._since: dict[Home, Place] = {}
@@ -131,7 +133,7 @@ class Constants:
             return None
         says = None
         try:
-            value = statement.value(Env(_Known(self, plan.scope), {}))  # type: ignore[arg-type]  # a script only finds and declares
+            value = statement.value(Env(_Known(self, plan.scope), self._enums))  # type: ignore[arg-type]  # a script only finds and declares
             says = truth(value, "the condition") if is_asked else None
         except ScriptError as error:
             place = attribute.place_at(uses[0].position) if uses else attribute.value_place

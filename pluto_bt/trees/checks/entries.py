@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 from pluto_bt.source import Place
 from pluto_bt.source.xml_reader import XmlAttribute
 from pluto_bt.trees.engine.conditions import POST_CONDITIONS, PRE_CONDITIONS
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel
@@ -102,12 +103,15 @@ def _conditions(plan: Plan, names: tuple[str, ...]) -> list[Use]:
 
 
 def script_uses(attribute: XmlAttribute) -> Iterator[Use]:
-    """What a script reads and writes."""
+    """What a script reads and writes; the names of enums are numbers, not entries."""
+    enums = plugin_enums()
     try:
         uses = names_used(attribute.value)
     except ScriptSyntaxError:
         return  # told by the static check
     for use in uses:
+        if use.how == "read" and use.name in enums:
+            continue
         yield Use(use.name, attribute, use.position, use.how, True, True)
 
 

@@ -14,6 +14,7 @@ from pluto_bt.source.xml_reader import XmlAttribute, XmlElement
 from pluto_bt.trees.checks.entries import Home, Use, home_of, script_uses, uses_after, uses_before
 from pluto_bt.trees.checks.outcomes import GUARDS, Ends, S
 from pluto_bt.trees.engine.conditions import CONDITIONS
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
@@ -45,12 +46,15 @@ class Flow:
         self._told = {(fault.file, fault.line, fault.column) for fault in report.faults.in_order() if fault.severity == "error"}
         self.is_closed = True
         self.loose: set[str] = set()
+        self._tags: dict[int, XmlElement] = {}  # by id of the scope inside: the SubTree tag
 
     def run(self, nodes: list[Plan]) -> None:
         """Check; `nodes` is the whole mission in the order of `Plan.walk`."""
         self.is_closed = all(plan.node_type is None or plan.node_type.is_ours for plan in nodes)
         for plan in nodes:
             self.loose.update(_unknown_keys(plan))
+            if plan.node_type is None and plan.children:
+                self._tags[id(plan.children[0].scope)] = plan.element
             self.uses[id(plan)] = before, after = uses_before(plan), uses_after(plan)
             for use in (*before, *after):
                 if use.how == "write":
@@ -122,36 +126,58 @@ class Flow:
             return
         self._told.add(where)
         later = self._writers.get(home)
-        code, what, found = "unset-key", f'nothing writes entry "{use.key}", which is read here', "nothing writes it"
+        owner, name = home_of(scope, use.key)
+        is_parents = owner is not scope and not use.key.startswith("@")  # a SubTree tag leads to it
+        alias = f' as "{use.key}"' if is_parents and name != use.key else ""
+        shown = name if alias else use.key
+        code, what, found = "unset-key", f'nothing writes entry "{shown}", which is read here{alias}', "nothing writes it"
         if later is not None:
-            what = f'entry "{use.key}" is read here before anything can have written it'
+            what = f'entry "{shown}" is read here{alias} before anything can have written it'
             found = f"it is written at {later.file or '<text>'}:{later.line}:{later.column}"
         elif use.key.startswith("@") and self._board.topics is not None:
             code, what = "unknown-topic", f'there is no topic and no entry "{use.key}"'
         elif use.how == "change":
-            what = f'entry "{use.key}" does not exist, so nothing can be assigned to it'
+            what = f'entry "{shown}" does not exist, so nothing can be assigned to it'
         is_sure = self.is_closed or (code == "unknown-topic" and in_contract)  # a leaf of a user's may write entries, but no topics
         report = self._report.late if use.fails and is_sure else self._report.warning
-        report(place, code, what, expected="an entry that has a value", found=found, mend=self._mend(scope, use, later is not None))
+        found += self._tag_that_leads(scope, use.key) if is_parents else ""
+        mend = self._mend(owner if is_parents else scope, use, name, later)
+        report(place, code, what, expected="an entry that has a value", found=found, mend=mend)
 
-    def _mend(self, scope: Scope, use: Use, is_late: bool) -> str:
+    def _tag_that_leads(self, scope: Scope, key: str) -> str:
+        """Where a port of a SubTree tag gives `key` its meaning: the outermost, for there the entry has its own name."""
+        told = ""
+        while scope.parent is not None and not key.startswith("@"):
+            tag, key_outside = self._tags.get(id(scope)), scope.remap.get(key)
+            attribute = tag.attributes.get(key) if tag is not None and key_outside is not None else None
+            if tag is not None and attribute is not None:
+                where, line = attribute.place.file or "<text>", f"{attribute.place.line}:{attribute.place.column}"
+                told = f'; {key}="{attribute.value}" of <SubTree ID="{tag.get("ID")}"> at {where}:{line} leads to it'
+            elif not scope.autoremap:
+                break
+            key, scope = key_outside or key, scope.parent
+        return told
+
+    def _mend(self, scope: Scope, use: Use, name: str, later: Place | None) -> str:
+        """`scope` and `name` are those of the entry, not of the SubTree that reads it."""
         if use.how == "change":
             return "':=' creates the entry"
-        if is_late:
+        if later is not None:
             return "write it earlier, for example with a Script at the beginning"
-        bare = use.key.removeprefix("@")
+        bare = name.removeprefix("@")
         if use.key.startswith("@"):
             return did_you_mean(bare, self._board.topic_names).replace('"', '"@', 1)
         parent = scope.parent
         if parent is not None and (self._is_given(parent, bare) or self._home(parent, bare) in self._writers):
             return f'map it on the <SubTree> tag: {bare}="{{{bare}}}"'
-        owner = id(home_of(scope, use.key)[0])
-        near = did_you_mean(bare, [name for home, name in self._writers if home == owner] + [*self._inputs])
+        enums, inputs = plugin_enums() if use.in_script else (), self._inputs if parent is None else ()
+        near = did_you_mean(bare, [*(name for home, name in self._writers if home == id(scope)), *inputs, *enums])
         if near:
             return near
         if parent is not None:
             return f"the entry is that of the SubTree alone: give the tag a port {bare}"
         quoted = f"a text stands in single quotes: '{bare}'; " if use.in_script else ""
+        quoted += "a name for a number comes from ENUMS of a plugin; " if quoted and bare.isupper() else ""
         return f"{quoted}write it first, or declare it as an input in TreeNodesModel"
 
 

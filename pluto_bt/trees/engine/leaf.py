@@ -20,7 +20,7 @@ from py_trees.ports import NoDataAvailable
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.trees.engine.context import Context
 from pluto_bt.trees.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS, Result, Skip
-from pluto_bt.trees.errors import RAISED, StepError
+from pluto_bt.trees.errors import RAISED, PortMisfit, StepError
 
 
 def bind_leaf(leaf: Any, context: Context) -> None:
@@ -143,7 +143,9 @@ def _halt(leaf: Any) -> Callable[[], None]:
 
 
 def told(error: BaseException) -> str:
-    """An exception in one line, with the place in the leaf's own file where it was raised."""
+    """An exception in one line, with the place in the leaf's own file where it was raised; of a port's value only what is wrong with it."""
+    if isinstance(error, (PortMisfit, NoDataAvailable)):
+        return str(error)
     what = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
     places = [frame for frame in traceback.extract_tb(error.__traceback__) if "/pluto_bt/trees/" not in frame.filename.replace(os.sep, "/")]
     return f"{what} ({os.path.basename(places[-1].filename)}:{places[-1].lineno})" if places else what

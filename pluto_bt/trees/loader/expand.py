@@ -111,7 +111,7 @@ class Expansion:
         earlier = self._subtree_paths.get(inner)
         if earlier is not None:
             place = (given or attribute).value_place
-            what = f"two SubTrees have the path {inner!r}; the other is at {earlier.file or '<text>'}:{earlier.line}"
+            what = f"two SubTrees have the path {inner!r}; the other is at {_shown(earlier)}"
             self._report.error(place, "duplicate-path", what, expected="a name of its own", found=inner)
         self._subtree_paths[inner] = element.place
         name = element.get("name", tree_id)
@@ -206,15 +206,27 @@ class Expansion:
         first, place = self._declared_at.get(id(entry)), attribute.value_place
         literal = self._literals.get(id(entry)) if first is None else None
         if literal is not None:  # told where it stands, not in the tree that it is given to
-            what = f'entry "{key}" holds {holds}, as this literal is read; port "{port}" at {place.file or "<text>"}:{place.line} needs {kind}'
-            place, lacks_point = literal.value_place, (holds, kind) == ("int", "double")
-            with_point = f'write "{literal.value}.0", or declare the port as {kind} in TreeNodesModel'
-            mend = with_point if lacks_point else "write the literal as the port needs it"
+            what = f'entry "{key}" holds {holds}, as this literal is read; port "{port}" at {_shown(place)} needs {kind}'
+            place = literal.value_place
+            mend = _mend_of_literal(literal.value, holds, kind)
         else:
-            where = f" since {first.file or '<text>'}:{first.line}" if first is not None else ""
+            where = f" since {_shown(first)}" if first is not None else ""
             what = f'entry "{key}" holds {holds}{where}; port "{port}" needs {kind}'
             is_literal = first is None and kind_of_value(entry.value) is not None
-            mend = "write the literal as the port needs it" if is_literal else "use another entry"
+            mend = _mend_of_literal(str(entry.value), holds, kind) if is_literal else "use another entry"
         is_sure = node_type.make is not None and id(entry) not in self._by_models  # models are often careless about types
         tell = self._report.error if is_sure else self._report.warning
         tell(place, "type-clash", what, expected=kind, found=holds, mend=mend)
+
+
+def _shown(place: Place) -> str:
+    return f"{place.file or '<text>'}:{place.line}:{place.column}"
+
+
+def _mend_of_literal(text: str, holds: str, kind: str) -> str:
+    """How a value on a SubTree tag, or of `--port`, that was read as `holds` becomes a `kind`."""
+    if kind == STRING.name:
+        return f'declare the port in TreeNodesModel with type="{kind}": then digits are text'
+    if (holds, kind) == ("int", "double"):
+        return f'write "{text}.0", or declare the port as {kind} in TreeNodesModel'
+    return "write the literal as the port needs it"

@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from pluto_bt.source import Faults, Place, did_you_mean
+from pluto_bt.source import Faults, Place, did_you_mean, nearest_word
 from pluto_bt.source.xml_reader import XmlAttribute, XmlElement, read_xml, read_xml_file
 from pluto_bt.trees.loader.registry import EXPLICIT_TAGS, name_problem
 from pluto_bt.trees.loader.version3 import SUBTREE_HINT
@@ -183,7 +183,7 @@ class MissionFiles:
             self.faults.error(attribute.value_place, "too-deep", what, expected=f"at most {MAX_INCLUDES} levels", found="more")
             return False
         if not os.path.isfile(path):
-            mend, what = did_you_mean(path.name, _neighbours(path)), f"there is no file {attribute.value!r}"
+            mend, what = _nearest_neighbour(path), f"there is no file {attribute.value!r}"
             self.faults.error(attribute.value_place, "no-file", what, expected="a mission file", found=shown, mend=mend)
             return False
         if real in self._read:
@@ -226,11 +226,14 @@ class MissionFiles:
         return model
 
 
-def _neighbours(path: Path) -> list[str]:
+def _nearest_neighbour(path: Path) -> str:
+    """'did you mean "old.xml"?', by the names without their endings, which would make every file a little like every other."""
     try:
-        return sorted(entry.name for entry in path.parent.iterdir() if entry.suffix == ".xml")
+        stems = {entry.stem: entry.name for entry in sorted(path.parent.iterdir()) if entry.suffix == ".xml"}
     except (OSError, ValueError):
-        return []
+        return ""
+    near = nearest_word(path.stem, stems)
+    return f'did you mean "{stems[near]}"?' if near else ""
 
 
 def main_place(root: XmlElement) -> Place:

@@ -7,17 +7,18 @@ from collections.abc import Mapping
 from pluto_bt.maps.numbers import MAX_METRES
 from pluto_bt.source import Place, did_you_mean, nearest_word
 from pluto_bt.trees.loader.files import MissionFiles, Model, TreeSource
+from pluto_bt.trees.loader.literal_check import new_words
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.loader.report import Report
 from pluto_bt.trees.ports import is_beyond
 from pluto_bt.trees.python_types import kind_of_type
 from pluto_bt.trees.scopes import EMPTY, Scope
-from pluto_bt.trees.values import BOOL, DOUBLE, INT, Kind, PortProblem, declared_value
+from pluto_bt.trees.values import BOOL, DOUBLE, INT, STRING, TEXTS, Kind, PortProblem, declared_value
 
 POINT, POINTS = kind_of_type(tuple[float, float]), kind_of_type(list[tuple[float, float]])
 # What a model may declare of an input, as `type`; other words are taken for C++ types that mean nothing here.
 DECLARED = {
-    "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL,
+    "int": INT, "double": DOUBLE, "float": DOUBLE, "bool": BOOL, **dict.fromkeys(TEXTS, STRING),
     "point": POINT, "points": POINTS,
 }  # fmt: skip
 
@@ -52,7 +53,7 @@ def _write(root: Scope, name: str, text: str, type_name: str, place: Place, repo
         problem = _problem(kind, text, may_be_empty)
         if problem:
             what = f'input "{name}" is declared as {type_name}; "{text}" is none'
-            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=problem)
+            report.error(place, "bad-input", what, expected=kind.form, found=text or "nothing", mend=new_words(problem, kind.form))
             return
     try:
         root.write(name, declared_value(text, type_name))

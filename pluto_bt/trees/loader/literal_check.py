@@ -29,7 +29,8 @@ def check_literal(attribute: XmlAttribute, port: PortModel, report: Report, *, b
         # the names of statuses are only looked at while ticking
         tell = report.late if port.kind is STATUS else report.error
         what = f'"{text}" does not fit port "{port.name}"'
-        tell(attribute.value_place, "bad-literal", what, expected=port.form, found=text or "nothing", mend=_mend(text, str(error)))
+        mend = _mend(text, new_words(str(error), port.form))
+        tell(attribute.value_place, "bad-literal", what, expected=port.form, found=text or "nothing", mend=mend)
         return
     problem = range_problem(port, value)
     if problem:
@@ -62,8 +63,13 @@ def _tell_rest(attribute: XmlAttribute, port: PortModel, value: object, rest: st
         report.warning(place, "trailing-text", f'"{text}" is read as {value}', expected=port.form, found=text, mend=mend)
 
 
+def new_words(problem: str, form: str) -> str:
+    """What a reader says of a text, unless it only says once more which form it expects."""
+    return "" if problem.startswith("expected ") and problem.removeprefix("expected ") in form else problem
+
+
 def _mend(text: str, problem: str) -> str:
     bare = text.strip()
     if bare != text and bare:
         return "remove the blanks"
-    return f"{problem}; {{{text}}} would read an entry" if text.isidentifier() else problem
+    return "; ".join(filter(None, (problem, f"{{{text}}} would read an entry" if text.isidentifier() else "")))

@@ -13,6 +13,7 @@ from pluto_bt.runtime.clock import MissionClock
 from pluto_bt.source import Faults, Place, did_you_mean
 from pluto_bt.trees.contracts import Contract
 from pluto_bt.trees.engine.context import Context
+from pluto_bt.trees.enums import plugin_enums
 from pluto_bt.trees.errors import MissionError
 from pluto_bt.trees.loader.construct import Construction
 from pluto_bt.trees.loader.contracts import read_contracts
@@ -73,7 +74,7 @@ def load_mission(
         nodes: classes of leaves, besides all that py_trees' registry knows.
         clock: the mission's time; without one, the monotonic clock of this computer.
         blackboard: values of root entries before the first tick.
-        enums: names that scripts may use as numbers.
+        enums: names that scripts may use as numbers, besides those that plugins bring.
         tree: the main tree (`--tree`).
         ports: inputs of the main tree (`--port`), as text.
         robot, topics: what leaves find at `blackboard.robot` and under `@topic` keys.
@@ -93,7 +94,7 @@ def build(reading: Reading, clock: MissionClock | None, enums: Mapping[str, int]
         raise MissionError(faults.in_order())
     reading.board.robot = robot
     context = Context(clock if clock is not None else _monotonic_clock())
-    construction = Construction(context, dict(enums or {}), report)
+    construction = Construction(context, {**plugin_enums(), **(enums or {})}, report)
     root = construction.run(reading.plan)
     if report.stops_loading:
         raise MissionError(faults.in_order())

@@ -15,6 +15,7 @@ from pluto_bt.behaviours.nav2.missing import CONDITIONS, MISSING
 from pluto_bt.trees.controls import CONTROLS
 from pluto_bt.trees.decorators import DECORATORS
 from pluto_bt.trees.engine.node import DecoratorNode, Node
+from pluto_bt.trees.enums import learn_enums
 from pluto_bt.trees.leaves import LEAVES
 from pluto_bt.trees.nav2 import NAV2_NODES
 from pluto_bt.trees.ports import Direction, PortModel, models_of_class
@@ -74,19 +75,22 @@ def builtin_types() -> dict[str, NodeType]:
 
 
 def node_types(nodes: Iterable[Any] = (), plugins: Iterable[str] = ()) -> dict[str, NodeType]:
-    """Every type by name: registered py_trees leaves, then `nodes`, then the built-in ones, later ones hiding earlier.
+    """Every type by name: registered py_trees leaves, Nav2's controls, then `nodes`, then the built-in ones, later ones hiding earlier.
 
     Args:
         nodes: classes of leaves (py_trees' `BehaviourWithPorts`), or of our own ControlNode and DecoratorNode.
         plugins: modules to import first; what they define is registered by that.
+    Raises: ImportError; ValueError for `ENUMS` of a plugin that cannot be.
     """
     for plugin in plugins:
-        importlib.import_module(plugin)
+        problems = learn_enums(importlib.import_module(plugin))
+        if problems:
+            raise ValueError(f"{plugin}: {'; '.join(problems)}")
     registry = get_ports_registry()
     tags = {cls: tag for tag, cls in registry.items()}
     types = {name: _missing_type(name, *row) for name, row in MISSING.items()}
-    types |= {name: _own_type(name, cls, builtin=False) for name, cls in NAV2_NODES.items()}
     types |= {tag: _leaf_type(tag, cls) for tag, cls in registry.items()}
+    types |= {name: _own_type(name, cls, builtin=False) for name, cls in NAV2_NODES.items()}
     for cls in nodes:
         name = tags.get(cls, cls.__name__)
         types[name] = _own_type(name, cls, builtin=False) if issubclass(cls, Node) else _leaf_type(name, cls)

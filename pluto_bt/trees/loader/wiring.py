@@ -8,6 +8,7 @@ from typing import Any
 
 from py_trees.ports import NoDataAvailable
 
+from pluto_bt.trees.errors import PortMisfit
 from pluto_bt.trees.loader.expand import Plan
 from pluto_bt.trees.loader.pointers import key_of
 from pluto_bt.trees.ports import PortModel, PortProblem, range_problem
@@ -112,7 +113,7 @@ def _get_input(leaf: Any, ports: dict[str, PortModel], readers: Readers) -> Call
         except MissingValue as missing:
             return _fallback(leaf, ports[port_name], default, f"{missing}; write it on every way that leads here, or once at the beginning")
         except PortProblem as misfit:
-            raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
+            raise PortMisfit(f"port {port_name!r}: {misfit}") from None
         except KeyError:
             if port_name in readers:
                 raise
@@ -132,7 +133,7 @@ def _set_output(leaf: Any, ports: dict[str, PortModel], writers: Writers, writte
             if port_name in writers:
                 writers[port_name](value)
         except PortProblem as misfit:
-            raise TypeError(f"{leaf.name}: port {port_name!r}: {misfit}") from None
+            raise PortMisfit(f"port {port_name!r}: {misfit}") from None
 
     return set_output
 
