@@ -54,7 +54,7 @@ COLOURS = """<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>
 def test_a_module_brings_names_for_numbers(load: Load) -> None:
     assert {fault.code for fault in check_mission(COLOURS)} == {"unset-key"}
     assert load('ENUMS = {"RED": 0, "BLUE": 1, "THE_ANSWER": 42}\n') == ()
-    assert check_mission(COLOURS) == ()
+    assert check_mission(COLOURS) == () == check_mission(COLOURS.replace("colour := RED", "colour := 3; colour := RED")), "a number takes a number"
     mission = load_mission(COLOURS, clock=VirtualClock())
     assert mission.tick_once() == "SUCCESS" and mission.blackboard["answer"] == 42.0
     own = load_mission(COLOURS, clock=VirtualClock(), enums={"THE_ANSWER": 7})
