@@ -47,9 +47,10 @@ def parse(message: Message) -> AnyRequest:
                 raise RefusedError("invalid", text)
     given |= _content(message)
     try:
-        return msgspec.convert(given, kind, strict=False)  # type: ignore[no-any-return]
+        request: AnyRequest = msgspec.convert(given, kind, strict=False)
     except msgspec.ValidationError as error:
         raise RefusedError("invalid", _explain(tag, given, known, str(error))) from None
+    return request
 
 
 def _explain(tag: str, given: dict[str, Any], known: Sequence[str], complaint: str) -> str:

@@ -6,10 +6,15 @@ from pluto_bt.source import Faults, Place
 
 
 class Report:
-    """Collects faults; `stops_loading` tells whether one was found that `load_mission` refuses."""
+    """Collects faults; `stops_loading` tells whether one was found that `load_mission` refuses.
 
-    def __init__(self, faults: Faults) -> None:
+    Args:
+        is_ticked: what is looked at will be ticked; else what would fail then is a warning.
+    """
+
+    def __init__(self, faults: Faults, *, is_ticked: bool = True) -> None:
         self.faults = faults
+        self._is_ticked = is_ticked
         self._late = 0
 
     def error(self, place: Place, code: str, message: str, *, expected: str = "", found: str = "", mend: str = "") -> None:
@@ -18,6 +23,9 @@ class Report:
 
     def late(self, place: Place, code: str, message: str, *, expected: str = "", found: str = "", mend: str = "") -> None:
         """Something that fails at the first tick: an error for `check` and `run`; `load_mission` lets it pass."""
+        if not self._is_ticked:
+            self.warning(place, code, message, expected=expected, found=found, mend=mend)
+            return
         self._late += 1
         self.faults.error(place, code, message, expected=expected, found=found, mend=mend)
 
@@ -27,10 +35,8 @@ class Report:
 
     @property
     def doubtful(self) -> Report:
-        """A report to the same faults of what may never be ticked: what would fail then is a warning."""
-        report = Report(self.faults)
-        report.late = report.warning  # type: ignore[method-assign]
-        return report
+        """A report to the same faults, of what may never be ticked."""
+        return Report(self.faults, is_ticked=False)
 
     @property
     def stops_loading(self) -> bool:
