@@ -138,7 +138,7 @@ class FollowRay(MotionLeaf):
         if not around.look(robot, now_s) or around.way is None:
             return self.fail("no-path", "there is no path to follow: FindPath comes first")
         self._goal = goal_of(self)
-        self._following = RayFollowing(around.map, around.ways.least_m, around.openings)
+        self._following = RayFollowing(around.map, around.ways.least_m, around.ways.room_m, around.openings)
         self._following.begin(around.way, self._find, now_s, around.robot)
         self._point: Pair | None = None
         self._heading_rad: float | None = None
