@@ -103,12 +103,13 @@ class LocalMap:
 
     # ------------------------------------------------------------------ seeing
 
-    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float) -> None:
+    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float, again_s: float = 0.0) -> None:
         """Take a scan.
 
         Args:
             laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
+            again_s: what lies low counts when it has been seen in one place for so long.
         """
         self._follow(laser)
         angles, _, _ = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
@@ -123,7 +124,7 @@ class LocalMap:
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
-                        self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
+                        self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
             self._changed(x, y, reach_m)
 
     def visit(self, x_m: float, y_m: float) -> None:
