@@ -62,7 +62,7 @@ class Motion:
         was_at_work = self.job is not None
         self._end_job()
         if not is_finite(command):
-            return self._refuse(now_s, "the command has a number that is not finite")
+            return self._refuse(now_s, "a number of the command is missing or not finite")
         if split_flags(command.flags) is not None:
             return msgspec.structs.replace(command, stamp_s=now_s)
         if command.flags == MotionCommand.SET_RECTANGLE:

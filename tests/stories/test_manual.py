@@ -107,6 +107,18 @@ def test_numbers_that_are_none_are_refused_at_every_link(link_and_robot: tuple[s
         assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
 
 
+@pytest.mark.parametrize(("position", "velocity"), [((), (0.3, 0.0)), ((0.0,), (0.3, 0.0)), ((0.0, 0.0), (0.3,)), ((0.0, 0.0), ("0.3", "0"))])
+def test_a_command_with_an_element_missing_is_refused_and_breaks_no_link(link_and_robot: tuple[str, RawRobot], position: Any, velocity: Any) -> None:
+    link, r = link_and_robot
+    r.post(0, velocity=(0.3, 0.0), to=link)
+    r.run(0.8)
+    r.post(0, position, velocity, to=link)
+    r.run(0.8)
+    assert r.status_of(link).reason == "bad-command"
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+    assert [part.module.name for part in r.system.parts if part.failures] == []
+
+
 # ------------------------------------------------------------------ threads and inboxes
 
 
