@@ -201,6 +201,25 @@ def test_a_goto_goes_on_when_motion_alone_is_stopped(robot: Make) -> None:
     assert r.run(30.0, lambda: r.status_of("avoid").element == (0, 1))
 
 
+def test_a_job_ends_with_its_motion_thread_and_leaves_a_status_of_rest(robot: Make) -> None:
+    r = robot()
+    r.order(42, (20.0, 0.0))
+    assert r.run(20.0, lambda: r.velocity[0] > 0.3)
+    r.module("motion", False)
+    assert (r.status.element, r.status.data) == ((0, 0, 0, -10), (0.0, 0.0))
+    r.run(2.0)
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_stopped_drive_shows_through_all_links_without_a_gap_whatever_is_commanded(robot: Make) -> None:
+    r = robot()
+    r.module("drive", False)
+    for flags in (0, 32, 42, 30):
+        r.order(flags, (8.0, 0.0), (0.3, 0.0))
+        r.run(3.0)
+        assert {code[0] for code in r.links} == {-10}, flags
+
+
 def test_what_was_posted_while_avoidance_was_stopped_is_dropped_and_not_shown_as_running(robot: Make) -> None:
     r = robot()
     r.module("avoid", False)
