@@ -13,6 +13,7 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.grid_shift import shift
 from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
@@ -238,15 +239,6 @@ class LocalMap:
             return
         for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
                             (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
-            _shift(grid, shift_i, shift_j, blank)
+            shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
         self._window = None
-
-
-def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
-    """Move the contents by (-di, -dj) cells and fill with `blank`."""
-    old = grid.copy()
-    grid[:] = blank
-    n = grid.shape[0]
-    if abs(di) < n and abs(dj) < n:
-        grid[max(0, -di) : n - max(0, di), max(0, -dj) : n - max(0, dj)] = old[max(0, di) : n - max(0, -di), max(0, dj) : n - max(0, -dj)]
