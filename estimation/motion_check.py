@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimation.home_scan import Home
-from estimation.key_scan import KeyScan, best_match, difference, is_good, is_odd
+from estimation.kept_scans import KeptScans
+from estimation.key_scan import LEAST_POINTS, KeyScan, best_match, difference, is_good, is_odd
 from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep
@@ -27,7 +28,6 @@ from estimation.way_trial import WayTrial
 Array = NDArray[np.float64]
 
 LEAST_BEAMS = 0.75  # of a scan must be numbers
-MOST_PAN_RAD = 1.6  # a laser that was panned farther sees too little of the same
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
@@ -63,6 +63,7 @@ class MotionCheck:
         self.fits = 1.0
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
+        self._kept = KeptScans()
         self._is_elsewhere = False
         self._home = Home()
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
@@ -123,18 +124,13 @@ class MotionCheck:
             self.blind()
             return
         scan = KeyScan(at, ranges_m, arm)
-        if key is None or len(ranges_m) != len(key.ranges_m) or abs(math.remainder(arm[2] - key.arm[2], math.tau)) > MOST_PAN_RAD:
-            self._is_elsewhere = False
-            self._renew(scan)
-            return
-        motion = motion_between(key.at, at)
-        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 3.0):
-            self._renew(scan)
-            return
+        compared = None if key is None else self._compared(scan, key, first_rad, step_rad)
+        if compared is None:
+            return self._renew(scan)  # nothing to compare with; what waits to be confirmed waits on
+        key, motion, match = compared
         if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
             self.found()
             self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
-        match = best_match(key, scan, motion, first_rad, step_rad, self._limits.max_range_m)
         self.fits = match.fits
         if is_good(match):
             if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not is_odd(home):
@@ -142,10 +138,25 @@ class MotionCheck:
             self._weigh(scan, key, motion, match)
             self._looked_s = stamp_s
             return
-        self._is_elsewhere = not self._is_elsewhere and is_odd(match) and not (key.is_crowded or scan.is_crowded)
+        if match.points >= LEAST_POINTS:
+            self._is_elsewhere = not self._is_elsewhere and is_odd(match) and not (key.is_crowded or scan.is_crowded)
         if self._is_elsewhere and not self._is_carried_off:
             self._home = Home(key)
+            self._kept.forget()
         self._renew(scan)
+
+    def _compared(self, scan: KeyScan, key: KeyScan, first_rad: float, step_rad: float) -> tuple[KeyScan, Motion, ScanStep] | None:
+        """The scan held against the key scan, or against a kept one that shows more of the same and is the key scan from now on; None if against none."""
+        compared = None
+        for one in self._kept.to_compare(scan, key):
+            motion = motion_between(one.at, scan.at)
+            if 0.0 < motion.time_s <= LONGEST_GAP_S and not _is_far(motion.pose, 3.0):
+                compared = one, motion, best_match(one, scan, motion, first_rad, step_rad, self._limits.max_range_m)
+                if compared[2].points >= LEAST_POINTS:
+                    break
+        if compared is not None and compared[0] is not key:
+            self._renew(compared[0])
+        return compared
 
     def blind(self) -> None:
         """A scan came that cannot be compared: the next one is compared with the one before."""
@@ -168,6 +179,7 @@ class MotionCheck:
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
         off_m, aside_m, off_rad = difference(motion.pose, seen)
         off_rad -= self._counted_rad
+        self._kept.keep(scan)
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(stamp_s):
@@ -181,9 +193,12 @@ class MotionCheck:
         sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
         if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
             return
-        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
-            self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
-            self._renew(scan)
+        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion):
+            self._kept.forget()
+        elif motion.time_s <= KEY_S and not _is_far(motion.pose, 1.0):
+            return
+        self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
+        self._renew(scan)
 
     def _trim(self, off_m: float, sigma_m: float, off_rad: float, sigma_rad: float, motion: Motion) -> None:
         """A comparison that is over, and found nothing wrong: learn from it what there is."""
@@ -203,6 +218,7 @@ class MotionCheck:
         if not self.turn.weigh(stamp_s, off_rad, noise_rad, motion, self._reckoning.now_s - stamp_s):
             return False
         self._renew(scan)
+        self._kept.forget()
         self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
         return True
 
@@ -220,6 +236,7 @@ class MotionCheck:
 
     def _lose(self, text: str) -> None:
         self._is_elsewhere = False
+        self._kept.forget()
         if not self._is_carried_off:
             self._is_carried_off = True
             self.news.append(News(LOST, text))

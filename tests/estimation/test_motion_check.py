@@ -39,7 +39,8 @@ class Drive:
         self._wheels, self._gyro, self._has_laser = wheels, gyro, has_laser
         self._scene, self._rng = Scene(ROOM), np.random.default_rng(3)
         self._k = 0
-        self._scans: list[tuple[int, np.ndarray]] = []
+        self._scans: list[tuple[int, float, np.ndarray]] = []
+        self.pan: Callable[[float], float] = lambda t: 0.0
 
     def run(self, seconds: float, speed: float = 0.5) -> Drive:
         for _ in range(round(seconds / DT_S)):
@@ -56,13 +57,14 @@ class Drive:
         return self
 
     def _scan(self, t: float) -> None:
-        if self._k % SCAN_EVERY == 0 and self._has_laser:
+        pan = self.pan(t)
+        if self._k % SCAN_EVERY == 0 and self._has_laser and math.isfinite(pan):
             ranges = np.zeros(361)
-            self._scene.scan(compose(self.true, ARM), 0.6, 0.0, ANGLES, 80.0, ranges)
-            self._scans.append((self._k, np.round(ranges + 0.01 * self._rng.normal(size=361), 2)))
+            self._scene.scan(compose(self.true, (*ARM[:2], pan)), 0.6, 0.0, ANGLES, 80.0, ranges)
+            self._scans.append((self._k, pan, np.round(ranges + 0.01 * self._rng.normal(size=361), 2)))
         if self._scans and self._scans[0][0] + LATE <= self._k:
-            k, ranges = self._scans.pop(0)
-            self.check.look(k * DT_S, ranges, float(ANGLES[0]), float(ANGLES[1] - ANGLES[0]), ARM)
+            k, pan, ranges = self._scans.pop(0)
+            self.check.look(k * DT_S, ranges, float(ANGLES[0]), float(ANGLES[1] - ANGLES[0]), (*ARM[:2], pan))
 
     @property
     def error_m(self) -> float:
@@ -129,6 +131,21 @@ def test_a_robot_that_is_carried_is_lost_until_somebody_finds_it(to: Pose2) -> N
     drive.check.found()
     drive.believed = drive.true
     assert drive.run(3.0).words == [LOST] and not drive.check.lost and drive.error_m < 0.05
+
+
+def left_and_right(t: float) -> float:
+    """A wrist that looks to the left, to the right and ahead, a second each, and is on its way (NaN) for a second between."""
+    return (0.95, math.nan, -0.95, math.nan, 0.0, math.nan)[int(t) % 6]
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.4], ids=["standing", "driving"])
+@pytest.mark.parametrize("after_s", [k * 0.5 for k in range(12)])
+def test_who_is_carried_while_the_laser_looks_left_and_right_is_lost_whenever_that_happens(after_s: float, speed: float) -> None:
+    drive = Drive()
+    drive.pan = left_and_right
+    assert drive.run(6.1 + after_s, speed=speed).words == []
+    drive.true = (6.0, 4.0, 2.0)
+    assert drive.run(6.0, speed=0.0).words == [LOST]
 
 
 @pytest.mark.parametrize(("hidden_s", "words"), [(0.2, []), (2.0, [LOST, FOUND])], ids=["for one scan", "for a while"])
