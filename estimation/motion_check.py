@@ -121,12 +121,13 @@ class MotionCheck:
             return  # taken before the last finding: what was reckoned then is known to be wrong, and owed
         at, key = self._reckoning.at(stamp_s), self._key
         if at is None or np.count_nonzero(ranges_m > 0.0) < LEAST_BEAMS * len(ranges_m):
-            self.blind()
+            self._is_elsewhere = False  # the next one is compared with the one before
             return
         scan = KeyScan(at, ranges_m, arm)
         compared = None if key is None else self._compared(scan, key, first_rad, step_rad)
         if compared is None:
-            return self._renew(scan)  # nothing to compare with; what waits to be confirmed waits on
+            self._renew(scan)  # what waits to be confirmed waits on
+            return
         key, motion, match = compared
         if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
             self.found()
@@ -146,7 +147,7 @@ class MotionCheck:
         self._renew(scan)
 
     def _compared(self, scan: KeyScan, key: KeyScan, first_rad: float, step_rad: float) -> tuple[KeyScan, Motion, ScanStep] | None:
-        """The scan held against the key scan, or against a kept one that shows more of the same and is the key scan from now on; None if against none."""
+        """A scan held against the key scan, or a kept one that shows more of the same and is the key scan from now on; None if there is none."""
         compared = None
         for one in self._kept.to_compare(scan, key):
             motion = motion_between(one.at, scan.at)
@@ -157,10 +158,6 @@ class MotionCheck:
         if compared is not None and compared[0] is not key:
             self._renew(compared[0])
         return compared
-
-    def blind(self) -> None:
-        """A scan came that cannot be compared: the next one is compared with the one before."""
-        self._is_elsewhere = False
 
     def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
         """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
