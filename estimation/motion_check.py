@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimation.home_scan import Home
-from estimation.kept_scans import KeptScans
-from estimation.key_scan import LEAST_POINTS, KeyScan, best_match, difference, is_good, is_odd
+from estimation.kept_scans import KeptScans, held_against, is_far
+from estimation.key_scan import KeyScan, difference, is_good, is_odd
 from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep
@@ -32,8 +32,8 @@ SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
 SEES_ALONG_M, LEAST_WAY_M = 0.008, 0.3  # along a bare street a laser sees no way; nothing is learned there, nor from less of a way
-KEY_WAY_M, KEY_TURN_RAD, KEY_S = 1.0, 0.5, 3.0  # a scan is compared with until the robot has moved on so far
-LONGEST_GAP_S = 60.0  # without usable scans: later the place may look different
+KEY_S = 3.0  # a scan is compared with for so long, or until the robot has moved on by about `KEY_WAY_M`
+NEAR_KEYS = 1.5  # only within so many times that way does "it fits nowhere" mean another place
 ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
 
 
@@ -66,6 +66,7 @@ class MotionCheck:
         self._kept = KeptScans()
         self._is_elsewhere = False
         self._home = Home()
+        self._beams = (0.0, 0.0, 0.0)  # bearing of the first one, and from each to the next, rad; the laser's range, m
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._since_s = -math.inf
@@ -123,48 +124,41 @@ class MotionCheck:
         if at is None or np.count_nonzero(ranges_m > 0.0) < LEAST_BEAMS * len(ranges_m):
             self._is_elsewhere = False  # the next one is compared with the one before
             return
-        scan = KeyScan(at, ranges_m, arm)
-        compared = None if key is None else self._compared(scan, key, first_rad, step_rad)
+        scan, self._beams = KeyScan(at, ranges_m, arm), (first_rad, step_rad, self._limits.max_range_m)
+        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan)):
+            self.found()
+            self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
+        compared = None if key is None else self._kept.compared(scan, key, *self._beams)
         if compared is None:
             self._renew(scan)  # what waits to be confirmed waits on
             return
-        key, motion, match = compared
-        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
-            self.found()
-            self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
-        self.fits = match.fits
+        if compared[0] is not key:
+            self._renew(compared[0])
+        self.fits = compared[2].fits
+        self._judge(scan, *compared)
+
+    def _judge(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
+        """Is it the same place? Another one only if two scans in a row say so, and the place before does not come into view again."""
         if is_good(match):
-            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not is_odd(home):
-                self._is_elsewhere = False
+            home = self._seen_from_home(scan) if self._is_elsewhere else None
+            if home is not None and not is_good(home) and not is_odd(home, False, scan.is_crowded):
+                self._renew(scan)  # that tells neither way: it waits on
+                return
+            self._is_elsewhere = home is not None and not is_good(home)
             self._weigh(scan, key, motion, match)
-            self._looked_s = stamp_s
+            self._looked_s = scan.at.stamp_s
             return
-        if match.points >= LEAST_POINTS:
-            self._is_elsewhere = not self._is_elsewhere and is_odd(match) and not (key.is_crowded or scan.is_crowded)
-        if self._is_elsewhere and not self._is_carried_off:
-            self._home = Home(key)
+        if not is_far(motion.pose, NEAR_KEYS) and is_odd(match, key.is_crowded, scan.is_crowded):
+            self._is_elsewhere = not self._is_elsewhere
             self._kept.forget()
+            if self._is_elsewhere and not self._is_carried_off:
+                self._home = Home(key)
         self._renew(scan)
 
-    def _compared(self, scan: KeyScan, key: KeyScan, first_rad: float, step_rad: float) -> tuple[KeyScan, Motion, ScanStep] | None:
-        """A scan held against the key scan, or a kept one that shows more of the same and is the key scan from now on; None if there is none."""
-        compared = None
-        for one in self._kept.to_compare(scan, key):
-            motion = motion_between(one.at, scan.at)
-            if 0.0 < motion.time_s <= LONGEST_GAP_S and not _is_far(motion.pose, 3.0):
-                compared = one, motion, best_match(one, scan, motion, first_rad, step_rad, self._limits.max_range_m)
-                if compared[2].points >= LEAST_POINTS:
-                    break
-        if compared is not None and compared[0] is not key:
-            self._renew(compared[0])
-        return compared
-
-    def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
-        """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
-        home = self._home.key
-        if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
-            return None
-        return best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad, self._limits.max_range_m)
+    def _seen_from_home(self, scan: KeyScan) -> ScanStep | None:
+        """How a scan fits to the place where the robot was before it seemed elsewhere."""
+        held = None if self._home.key is None else held_against(self._home.key, scan, *self._beams)
+        return None if held is None else held[1]
 
     def _weigh(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
         """A good match: does it tell of the motion that was reckoned?"""
@@ -192,7 +186,7 @@ class MotionCheck:
             return
         if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion):
             self._kept.forget()
-        elif motion.time_s <= KEY_S and not _is_far(motion.pose, 1.0):
+        elif motion.time_s <= KEY_S and not is_far(motion.pose, 1.0):
             return
         self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
         self._renew(scan)
@@ -240,8 +234,3 @@ class MotionCheck:
 
     def _renew(self, scan: KeyScan) -> None:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
-
-
-def _is_far(pose: Pose2, times: float) -> bool:
-    """True if so many times the way or turn lies between two scans after which another key scan is taken."""
-    return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD
