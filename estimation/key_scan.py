@@ -18,7 +18,7 @@ LEAST_ODD_POINTS = 25  # fewer tell nothing
 BETTER_FIT = 0.1  # so much more than where localisation believes to be, another guess must explain
 NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all …
 POOR_FIT, MUCH = 0.55, 0.22  # … or many differ to both sides
-HIDDEN_FIT = 0.2  # a crowd hides much, but not nearly all
+HIDDEN_FIT, ALL_HIDDEN_FIT = 0.2, 0.03  # a crowd hides much and shows nothing farther; only a closed ring of people hides all
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 
 
@@ -74,7 +74,7 @@ def is_odd(match: ScanStep, crowd_before: bool = False, crowd_now: bool = False)
         return False
     both = min(match.longer, match.shorter)
     if crowd_before or crowd_now:
-        return not crowd_before and match.fits < HIDDEN_FIT and both > SIDES
+        return not crowd_before and (match.fits < ALL_HIDDEN_FIT or (match.fits < HIDDEN_FIT and both > SIDES))
     return match.fits < ONE_SIDED or (match.fits < NO_FIT and both > SIDES) or (match.fits < POOR_FIT and both > MUCH)
 
 
