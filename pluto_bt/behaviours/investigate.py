@@ -10,7 +10,7 @@ from py_trees.common import Status
 from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.robot import Robot, pose_doubt
+from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.behaviours.standstill import Standstill
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard.codes import CommandType
@@ -47,8 +47,7 @@ class FindObject(RobotLeaf):
         """Answers at once."""
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            doubt = pose_doubt(robot)
-            return self.fail(doubt.reason or "no-pose", doubt.text or "it is not known where the robot is")
+            return self.fail(*why_no_pose(robot))
         things = things_around(around.map, around.robot)
         inside = [thing for thing in things if self._fits(robot, around, thing)]
         for thing in inside:
