@@ -23,9 +23,8 @@ from pluto_bt.skills.walkers import ANYWHERE, WalkerWatch
 class FilterSenses(NamedTuple):
     """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3, each with its stamp.
 
-    `laser`, `tilt_rad` and `lacks` are those of `ScanView`: where `scan` was taken from, in the frame of dead reckoning; `sonar_at`: where the
-    robot was when `sonar` listened;
-    `executive_age_s`: seconds since the executive's last step.
+    `laser`, `tilt_rad` and `lacks` are those of `ScanView`: where `scan` was taken from, in the frame of dead reckoning;
+    `sonar_at`: where the robot was when `sonar` listened; `executive_age_s`: seconds since the executive's last step.
     """
 
     raw: ActuatorState | None
