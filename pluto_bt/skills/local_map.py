@@ -13,6 +13,7 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.grid_shift import shift
 from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
@@ -103,12 +104,13 @@ class LocalMap:
 
     # ------------------------------------------------------------------ seeing
 
-    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float) -> None:
+    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float, again_s: float = 0.0) -> None:
         """Take a scan.
 
         Args:
             laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
+            again_s: what lies low counts when it has been seen in one place for so long.
         """
         self._follow(laser)
         angles, _, _ = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
@@ -123,7 +125,7 @@ class LocalMap:
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
-                        self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
+                        self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
             self._changed(x, y, reach_m)
 
     def visit(self, x_m: float, y_m: float) -> None:
@@ -237,15 +239,6 @@ class LocalMap:
             return
         for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
                             (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
-            _shift(grid, shift_i, shift_j, blank)
+            shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
         self._window = None
-
-
-def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
-    """Move the contents by (-di, -dj) cells and fill with `blank`."""
-    old = grid.copy()
-    grid[:] = blank
-    n = grid.shape[0]
-    if abs(di) < n and abs(dj) < n:
-        grid[max(0, -di) : n - max(0, di), max(0, -dj) : n - max(0, dj)] = old[max(0, di) : n - max(0, -di), max(0, dj) : n - max(0, -dj)]
