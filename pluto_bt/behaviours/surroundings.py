@@ -63,7 +63,7 @@ class Surroundings:
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
         self.object: SeenObject | None = None
         if not goes_on:
-            self.map.covered[:] = 0
+            self.map.uncover()
             self.openings = Openings(self.map)
 
     def tune(self, parameters: MotionParameters) -> None:

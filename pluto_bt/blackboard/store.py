@@ -81,7 +81,10 @@ class Snapshot:
     def history(self, name: str) -> tuple[Sample, ...]:
         """The last samples up to that moment, oldest first, as many as the board still keeps."""
         newest = self.newest(name)
-        return () if newest is None else tuple(sample for sample in self._board.history(name) if sample.seq <= newest.seq)
+        if newest is None:
+            return ()
+        kept = self._board.history(name)
+        return kept if kept[-1] is newest else tuple(sample for sample in kept if sample.seq <= newest.seq)
 
     def around(self, name: str, stamp_s: float) -> tuple[Sample, Sample] | None:
         """The two samples whose stamps enclose `stamp_s`; None if it lies outside the history up to that moment."""

@@ -49,6 +49,7 @@ class LocalMap:
         """Nothing is known; the middle of the grid is here."""
         self.evidence: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self.covered: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
+        self._visited: Cell | None = None  # the robot is here, and that is marked
         self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
@@ -125,9 +126,17 @@ class LocalMap:
                         self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
             self._changed(x, y, reach_m)
 
+    def uncover(self) -> None:
+        """Nothing is covered any more."""
+        self.covered[:] = 0
+        self._visited = None
+
     def visit(self, x_m: float, y_m: float) -> None:
         """The robot is here."""
-        i, j = self.cell(x_m, y_m)
+        i, j = here = self.cell(x_m, y_m)
+        if here == self._visited:
+            return
+        self._visited = here
         n = self._here.shape[0] // 2
         if n <= i < CELLS - n and n <= j < CELLS - n:
             self.covered[i - n : i + n + 1, j - n : j + n + 1] |= self._here
@@ -227,7 +236,7 @@ class LocalMap:
                             (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
             _shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
-        self._window = None
+        self._window = self._visited = None
 
 
 def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
