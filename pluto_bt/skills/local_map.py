@@ -13,7 +13,7 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
-from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
+from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
@@ -53,7 +53,7 @@ class LocalMap:
         self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
-        self._touched: Counts = np.zeros((CELLS, CELLS), dtype=np.int32)
+        self._touched: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
         self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
@@ -115,7 +115,9 @@ class LocalMap:
         x, y = self.place(laser[0], laser[1])
         cell = self.cell_m
         if abs(tilt_rad) < LEVEL_RAD:
-            self._scans += 1
+            self._scans = self._scans % MOST_NUMBER + 1
+            if self._scans == 1:
+                self._touched[:] = 0  # the numbers of the round before come again
             p = self.parameters
             mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell, self.look_m / cell,
                        p.coverage_m / cell, p.join_m / cell)  # fmt: skip
