@@ -79,9 +79,7 @@ class Surroundings:
         """Keep the fine map too from now on."""
         if self.fine is None:
             fine = {"path_half_width_m": CELLS_OF_A_PATH * cell_m, "wide_half_width_m": FINE_ROOM_M, "look_m": FINE_LOOK_M, "join_m": FINE_JOIN_M}
-            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine))
-            if not self._is_empty:
-                self.fine.forget(self.robot)
+            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine), self.robot)
 
     def forget(self) -> None:
         """What was seen is not known any more; what was explored is."""
@@ -117,7 +115,7 @@ class Surroundings:
         self._doubt_m = min(MOST_DOUBT_M, 2.0 * math.sqrt(variance_m2 - self._first_variance_m2))
         if self._is_empty:
             for grid in self._grids():
-                grid.forget(self.robot)
+                grid.lay(self.robot)
             self._is_empty = False
         self.map.visit(*self.robot[:2])
         self.views = tuple(robot.scan_views())

@@ -35,7 +35,7 @@ class Cell(NamedTuple):
 class LocalMap:
     """The grid. `clearance` (cells) is kept up to date by `refresh`; `low_s` is when something low was seen, `NEVER_S` = never."""
 
-    def __init__(self, parameters: MotionParameters) -> None:
+    def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0)) -> None:
         self.parameters = parameters
         self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
@@ -43,7 +43,7 @@ class LocalMap:
         n = math.ceil(HERE_M / self.cell_m)
         self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
         self._fan = Fan()
-        self.forget((0.0, 0.0, 0.0))
+        self.forget(middle)
 
     def forget(self, middle: Planar) -> None:
         """Nothing is known; the middle of the grid is here."""
@@ -57,6 +57,10 @@ class LocalMap:
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
         self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
+        self.lay(middle)
+
+    def lay(self, middle: Planar) -> None:
+        """Put the middle of a grid in which nothing is known here."""
         self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
 
     # ------------------------------------------------------------------ places
