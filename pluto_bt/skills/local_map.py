@@ -17,6 +17,7 @@ from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, al
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
+from pluto_bt.skills.window import Window
 
 CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
@@ -56,7 +57,8 @@ class LocalMap:
         self._touched: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
-        self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
+        self._window: Window | None = None  # where something changed since the last refresh
+        self._has_low = False  # something was found to lie low, which is forgotten by itself wherever it is
         self.lay(middle)
 
     def lay(self, middle: Planar) -> None:
@@ -123,14 +125,15 @@ class LocalMap:
             if self._scans == 1:
                 self._touched[:] = 0  # the numbers of the round before come again
             p = self.parameters
-            mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell, self.look_m / cell,
-                       p.coverage_m / cell, p.join_m / cell)  # fmt: skip
-            self._changed(x, y, self.look_m)
+            touched = mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell,
+                                 self.look_m / cell, p.coverage_m / cell, p.join_m / cell)  # fmt: skip
+            self._changed(Window.around(x, y, self.look_m / cell) if self._has_low else Window(*touched))
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
                         self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
-            self._changed(x, y, reach_m)
+            self._has_low = True
+            self._changed(Window.around(x, y, reach_m / cell))
 
     def uncover(self) -> None:
         """Nothing is covered any more."""
@@ -161,7 +164,8 @@ class LocalMap:
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
         self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
-        self._changed(*self.place(x_m, y_m), radius_m)
+        self._has_low = True
+        self._changed(Window.around(*self.place(x_m, y_m), radius_m / self.cell_m))
 
     def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
         """What is here cannot be explored any better: it counts as covered."""
@@ -187,22 +191,17 @@ class LocalMap:
             else:
                 grid[:] = blank
                 grid[square] = kept
-        self._changed(i, j, side_m if inside else CELLS * self.cell_m)
+        self._changed(Window.around(i, j, side_m / self.cell_m if inside else CELLS))
 
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
         if self._window is None:
             return
-        keep = math.ceil(self.far_cells)
-        low_i, low_j, high_i, high_j = self._window
-        i0, j0 = max(0, math.floor(low_i) - 2 * keep), max(0, math.floor(low_j) - 2 * keep)
-        i1, j1 = min(CELLS, math.ceil(high_i) + 2 * keep), min(CELLS, math.ceil(high_j) + 2 * keep)
-        self._window = None
-        oldest_s = self._oldest_s(now_s)
-        i0, i1, j0, j1 = changes(self.evidence, self.low_s, oldest_s, self._stands, i0, i1, j0, j1)
-        if i0 < i1:  # mostly a few cells, or none
-            i0, i1, j0, j1 = max(0, i0 - 2 * keep), min(CELLS, i1 + 2 * keep), max(0, j0 - 2 * keep), min(CELLS, j1 + 2 * keep)
-            clearances(self.evidence, self.low_s, oldest_s, i0, i1, j0, j1, self.clearance, keep, self.far_cells)
+        keep, oldest_s = math.ceil(self.far_cells), self._oldest_s(now_s)
+        window, self._window = self._window.grown(2 * keep if self._has_low else 0, CELLS), None
+        changed = Window(*changes(self.evidence, self.low_s, oldest_s, self._stands, *window))
+        if changed.i0 < changed.i1:  # mostly a few cells, or none
+            clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self.clearance, keep, self.far_cells)
 
     def without_walkers(self, places: Array, now_s: float) -> tuple[Bytes, Floats]:
         """Evidence and clearances as if nothing stood at and beside `places` (n, 2), where somebody walked."""
@@ -224,11 +223,8 @@ class LocalMap:
         """What was seen to lie low before is not known any more."""
         return max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
 
-    def _changed(self, i: float, j: float, reach_m: float) -> None:
-        reach = reach_m / self.cell_m
-        window = (i - reach, j - reach, i + reach, j + reach)
-        old = self._window
-        self._window = window if old is None else (min(old[0], window[0]), min(old[1], window[1]), max(old[2], window[2]), max(old[3], window[3]))
+    def _changed(self, window: Window) -> None:
+        self._window = window.joined(self._window)
 
     def _follow(self, robot: Planar) -> None:
         """Move the grid along when the robot comes within a quarter of its edge; what falls off is forgotten."""
@@ -242,7 +238,8 @@ class LocalMap:
                             (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
             _shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
-        self._window = self._visited = None
+        self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
+        self._visited = None
 
 
 def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
