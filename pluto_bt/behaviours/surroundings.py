@@ -13,6 +13,7 @@ import msgspec
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, LaserScan, Pair, Pose
 from pluto_bt.maps.platform import Platform
+from pluto_bt.skills import walked_ground
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
 from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
@@ -73,6 +74,7 @@ class Surroundings:
     def warm(self) -> None:
         """Use every kernel once, so that no later use waits for its compilation. For a memory that is then thrown away."""
         self.map.warm()
+        walked_ground.warm()
         self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
 
     def look_finely(self, cell_m: float) -> None:
