@@ -13,9 +13,8 @@ from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_map import CELLS, LocalMap
-from pluto_bt.skills.map_kernels import clearances
+from pluto_bt.skills.map_kernels import Floats, clearances
 from pluto_bt.skills.motion_parameters import MotionParameters
-from pluto_bt.skills.outline import Array
 from pluto_bt.skills.window import Window
 
 ANGLES = -math.pi / 2.0 + math.radians(0.5) * np.arange(361)
@@ -125,7 +124,7 @@ def test_clearance_is_the_distance_to_the_nearest_thing_but_for_eight_percent(se
         assert true - 1e-3 <= map.clearance[a, b] <= 1.09 * true + 1e-4
 
 
-def whole_clearance(map: LocalMap, now_s: float) -> Array:
+def whole_clearance(map: LocalMap, now_s: float) -> Floats:
     """Reckoned anew, for the whole grid."""
     whole = np.full_like(map.clearance, map.far_cells)
     oldest_s = max(0.0, now_s - map.parameters.ground_memory_s) - 1e-3
