@@ -13,7 +13,7 @@ from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot, pose_doubt
+from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
 from pluto_bt.blackboard.messages import FVectorState, Pair
@@ -93,9 +93,8 @@ class FindPath(RobotLeaf):
         return self._tell(around, goal)
 
     def _wait_for_a_pose(self, robot: Robot, now_s: float) -> Status:
-        doubt = pose_doubt(robot)
-        text, is_over = doubt.text or "it is not known where the robot is", now_s - self._start_s >= WAITING["no-pose"]
-        return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
+        reason, text = why_no_pose(robot)
+        return self.fail(reason, text) if now_s - self._start_s >= WAITING["no-pose"] else self.wait(text)
 
     def _awaits_somebody(self, around: Surroundings, goal: Pair, now_s: float) -> bool:
         """Where no way is left: True while somebody in it may walk on. After `PATIENCE_S` the robot takes the way up to him, if there is one."""

@@ -13,6 +13,7 @@ import msgspec
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, LaserScan, Pair, Pose
 from pluto_bt.maps.platform import Platform
+from pluto_bt.skills import walked_ground
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
 from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
@@ -67,7 +68,7 @@ class Surroundings:
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
         self.object: SeenObject | None = None
         if not goes_on:
-            self.map.covered[:] = 0
+            self.map.uncover()
             self.openings = Openings(self.map)
 
     def tune(self, parameters: MotionParameters) -> None:
@@ -77,15 +78,14 @@ class Surroundings:
     def warm(self) -> None:
         """Use every kernel once, so that no later use waits for its compilation. For a memory that is then thrown away."""
         self.map.warm()
+        walked_ground.warm()
         self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
 
     def look_finely(self, cell_m: float) -> None:
         """Keep the fine map too from now on."""
         if self.fine is None:
             fine = {"path_half_width_m": CELLS_OF_A_PATH * cell_m, "wide_half_width_m": FINE_ROOM_M, "look_m": FINE_LOOK_M, "join_m": FINE_JOIN_M}
-            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine))
-            if not self._is_empty:
-                self.fine.forget(self.robot)
+            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine), self.robot)
 
     def forget(self) -> None:
         """What was seen is not known any more; what was explored is."""
@@ -121,7 +121,7 @@ class Surroundings:
         self._doubt_m = min(MOST_DOUBT_M, 2.0 * math.sqrt(variance_m2 - self._first_variance_m2))
         if self._is_empty:
             for grid in self._grids():
-                grid.forget(self.robot)
+                grid.lay(self.robot)
             self._is_empty = False
         self.map.visit(*self.robot[:2])
         self.views = tuple(robot.scan_views())

@@ -23,8 +23,8 @@ from pluto_bt.skills.walkers import ANYWHERE, WalkerWatch
 class FilterSenses(NamedTuple):
     """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3, each with its stamp.
 
-    `laser`, `tilt_rad` and `lacks` are those of `ScanView`: where `scan` was taken from, in the frame of dead reckoning; `sonar_at`: where the robot was when `sonar` listened;
-    `executive_age_s`: seconds since the executive's last step.
+    `laser`, `tilt_rad` and `lacks` are those of `ScanView`: where `scan` was taken from, in the frame of dead reckoning;
+    `sonar_at`: where the robot was when `sonar` listened; `executive_age_s`: seconds since the executive's last step.
     """
 
     raw: ActuatorState | None
@@ -128,8 +128,8 @@ class _Ear:
         if sonar is None or sonar is self._heard or at is None:
             return
         self._heard = sonar
-        ranges_m = np.array(sonar.ranges_m)
-        if ranges_m.shape != (self._ring.count,) or not np.isfinite(ranges_m).all() or now_s - sonar.stamp_s > self._stale_s:
+        ranges_m = self._ring.readings(sonar.ranges_m)
+        if ranges_m is None or now_s - sonar.stamp_s > self._stale_s:
             self._heard = None
             space.drop_echoes()
             return
