@@ -160,14 +160,16 @@ class SweepWrist(WristTour):
 
     def targets(self) -> list[Look]:
         """Left, down, right, down, as far as each is asked for; among people down, and ahead for a while."""
-        wrist = self.robot.platform.devices.wrist if self.robot is not None else None
+        robot = self.robot
+        wrist = robot.platform.devices.wrist if robot is not None else None
         if wrist is None:
             return []
         pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
         if self.now_s() - self._walker_s < AMONG_PEOPLE_S:
             return [*ground(tilt, tilt), *[AHEAD] * LOOKS_AHEAD]
-        down = ground(tilt, min(NEAR * tilt, math.radians(wrist.tilt_limit_deg)))
+        is_quick = robot is not None and robot.surroundings.sees_walkers(self.now_s())  # among them one cannot look away for long
+        down = ground(tilt, tilt if is_quick else min(NEAR * tilt, math.radians(wrist.tilt_limit_deg)))
         return [Look(pan, 0.0), *down, Look(-pan, 0.0), *down] if pan > 0.0 else [*down, AHEAD]
 
     def act(self, robot: Robot) -> Status:
