@@ -7,7 +7,6 @@ things that a level scan passes over. Both are remembered, the second for `groun
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,20 +16,13 @@ from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, al
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
-from pluto_bt.skills.window import Window
+from pluto_bt.skills.window import Cell, Window, shift
 
 CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
 NEVER_S = -1.0
 HERE_M = 1.0  # so near to where the robot has been nothing needs a visit, though its laser has not looked there
-
-
-class Cell(NamedTuple):
-    """Indices of a cell, and (as floats) a place in cells."""
-
-    i: int
-    j: int
 
 
 class LocalMap:
@@ -57,6 +49,7 @@ class LocalMap:
         self._touched: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
+        self._shut: list[tuple[float, float, float, float]] = []  # x m, y m, radius m, when
         self._window: Window | None = None  # where something changed since the last refresh
         self._has_low = False  # something was found to lie low, which is forgotten by itself wherever it is
         self.lay(middle)
@@ -164,8 +157,19 @@ class LocalMap:
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
         self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
+        self._shut.append((x_m, y_m, radius_m, now_s))
         self._has_low = True
-        self._changed(Window.around(*self.place(x_m, y_m), radius_m / self.cell_m))
+        self.changed_around(x_m, y_m, radius_m)
+
+    def reopen(self) -> bool:
+        """Forget what was shut, but for what has been seen to lie low there since. False if nothing was shut."""
+        shut, self._shut = self._shut, []
+        for x_m, y_m, radius_m, shut_s in shut:
+            i, j = self._disc(x_m, y_m, radius_m)
+            is_same = self.low_s[i, j] == np.float32(shut_s)
+            self.low_s[i[is_same], j[is_same]] = NEVER_S
+            self.changed_around(x_m, y_m, radius_m)
+        return bool(shut)
 
     def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
         """What is here cannot be explored any better: it counts as covered."""
@@ -223,6 +227,10 @@ class LocalMap:
         """What was seen to lie low before is not known any more."""
         return max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
 
+    def changed_around(self, x_m: float, y_m: float, reach_m: float) -> None:
+        """Something was written into the cells up to so far from a point."""
+        self._changed(Window.around(*self.place(x_m, y_m), reach_m / self.cell_m))
+
     def _changed(self, window: Window) -> None:
         self._window = window.joined(self._window)
 
@@ -236,16 +244,7 @@ class LocalMap:
             return
         for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
                             (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
-            _shift(grid, shift_i, shift_j, blank)
+            shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
         self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
         self._visited = None
-
-
-def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
-    """Move the contents by (-di, -dj) cells and fill with `blank`."""
-    old = grid.copy()
-    grid[:] = blank
-    n = grid.shape[0]
-    if abs(di) < n and abs(dj) < n:
-        grid[max(0, -di) : n - max(0, di), max(0, -dj) : n - max(0, dj)] = old[max(0, di) : n - max(0, -di), max(0, dj) : n - max(0, -dj)]
