@@ -12,11 +12,12 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.grid_shift import shift
 from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
-from pluto_bt.skills.window import Cell, Window, shift
+from pluto_bt.skills.window import Cell, Window
 
 CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
@@ -102,12 +103,13 @@ class LocalMap:
 
     # ------------------------------------------------------------------ seeing
 
-    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float) -> None:
+    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float, again_s: float = 0.0) -> None:
         """Take a scan.
 
         Args:
             laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
+            again_s: what lies low counts when it has been seen in one place for so long.
         """
         self._follow(laser)
         angles, _, _ = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
@@ -124,7 +126,7 @@ class LocalMap:
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
-                        self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
+                        self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
             self._has_low = True
             self._changed(Window.around(x, y, reach_m / cell))
 
@@ -135,10 +137,9 @@ class LocalMap:
 
     def visit(self, x_m: float, y_m: float) -> None:
         """The robot is here."""
-        i, j = here = self.cell(x_m, y_m)
-        if here == self._visited:
+        if (here := self.cell(x_m, y_m)) == self._visited:
             return
-        self._visited = here
+        self._visited, (i, j) = here, here
         n = self._here.shape[0] // 2
         if n <= i < CELLS - n and n <= j < CELLS - n:
             self.covered[i - n : i + n + 1, j - n : j + n + 1] |= self._here

@@ -22,7 +22,7 @@ HIT, MISS = 3, 2  # a wall outlives the drop-outs of single beams, somebody who 
 MOST, LEAST = 6, -4
 MOST_NUMBER = 127  # of a scan, then they begin anew at 1
 LEVEL, STANDS, HOLE = 1, 2, 3  # what a beam that looks down may find
-AGAIN_S, FORGOTTEN_S = 0.4, 6.0  # what lies low has to be seen again in the same cell: who walks has gone on by then
+FORGOTTEN_S = 6.0  # what was seen to lie low before that is not known any more
 TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
 SAMPLE = 0.7  # cells between two samples of a beam
 ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middle of one to that of the next
@@ -100,11 +100,11 @@ def cells_along(places: Counts, x: float, y: float, c: float, s: float, size: in
 @kernel
 def mark_ground(
     low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float,
-    height: float, look: float, step: float, now_s: float,
+    height: float, look: float, step: float, now_s: float, again_s: float,
 ) -> None:  # fmt: skip
     """Enter what a scan tilted down by `tilt` says of the ground into `low_s`: metres, (x, y) in cells.
 
-    Ends more than `step` above the ground are low obstacles, once they are seen again later (`first_s` = when first); a beam that runs on
+    Ends more than `step` above the ground are low obstacles, once they are seen again `again_s` later (`first_s` = when first); a beam that runs on
     more than `step` below the ground has found a hole, where it went through the ground; both only where the beam before says the same.
     Ground that is where it should be takes old marks away.
     """
@@ -132,7 +132,7 @@ def mark_ground(
             continue
         if verdict == LEVEL:
             low_s[i, j] = first_s[i, j] = -1.0
-        elif verdict == HOLE or AGAIN_S <= now_s - first_s[i, j] <= FORGOTTEN_S:
+        elif verdict == HOLE or again_s <= 0.0 or again_s <= now_s - first_s[i, j] <= FORGOTTEN_S:
             low_s[i, j] = now_s
         elif evidence[i, j] <= 0 and (first_s[i, j] < 0.0 or now_s - first_s[i, j] > FORGOTTEN_S):
             first_s[i, j] = now_s

@@ -1,11 +1,9 @@
-"""Cells of a square grid: one, a rectangle of them, and all of them moved on under what they show."""
+"""Cells of a grid: one, and a rectangle of them."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
-
-import numpy as np
 
 
 class Cell(NamedTuple):
@@ -41,12 +39,3 @@ class Window(NamedTuple):
     def grown(self, by: int, size: int) -> Window:
         """With so many cells more on each side, as far as a square grid of `size` has them."""
         return Window(max(0, self.i0 - by), min(size, self.i1 + by), max(0, self.j0 - by), min(size, self.j1 + by))
-
-
-def shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
-    """Move the contents by (-di, -dj) cells and fill with `blank`."""
-    old = grid.copy()
-    grid[:] = blank
-    n = grid.shape[0]
-    if abs(di) < n and abs(dj) < n:
-        grid[max(0, -di) : n - max(0, di), max(0, -dj) : n - max(0, dj)] = old[max(0, di) : n - max(0, -di), max(0, dj) : n - max(0, -dj)]
