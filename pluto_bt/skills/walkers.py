@@ -43,12 +43,14 @@ class WalkerWatch:
         self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count only where others walk, …
         self._about_s = -math.inf  # … or did so till now
         self._doubted_s = -math.inf
+        self._rows: tuple[float, Array] = (-math.inf, NOBODY)  # the last ones, and when they were; before anything is taken they hold
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
         """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
         before = self._before.take(scan, laser)
         if before is None:
             return
+        self._rows = (-math.inf, NOBODY)
         ranges = scan.ranges_m
         near: Mask = (ranges > 0.0) & (ranges < REACH_M) & (believed != 0.0)
         beams = near.nonzero()[0]
@@ -62,6 +64,8 @@ class WalkerWatch:
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
         """(n, 4) x m, y m, how far beside that he may be, and how well it is known: who comes nearer, as `Approach` hears it."""
+        if len(places):
+            self._rows = (-math.inf, NOBODY)
         heard: list[Walker] = []
         for x, y, unsure_m, how in places.tolist():
             one = Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if how == SURELY else 1)
@@ -75,6 +79,11 @@ class WalkerWatch:
 
     def rows(self, now_s: float) -> Array:
         """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
+        if self._rows[0] != now_s:
+            self._rows = (now_s, self._rows_at(now_s))
+        return self._rows[1]
+
+    def _rows_at(self, now_s: float) -> Array:
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
         is_one_sure = any(one.times >= SURE for one in self._walkers) or len(self._perhaps) >= OFTEN
