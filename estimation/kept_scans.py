@@ -40,11 +40,11 @@ class KeptScans:
         """A scan held against the key scan, or against the kept one whose laser looked nearest if that shows more of the same; with the one that
         it was held against. None if there is none."""
         kept = min(reversed(self._scans), key=lambda one: pan_between(scan, one), default=key)
-        best = None
+        best: tuple[KeyScan, Motion, ScanStep] | None = None
         for before in (key,) if kept is key else (key, kept):
             is_alike = pan_between(scan, before) <= MOST_PAN_RAD and len(before.ranges_m) == len(scan.ranges_m)
             held = held_against(before, scan, first_rad, step_rad, max_range_m) if is_alike else None
-            if held is not None:
+            if held is not None and (best is None or held[1].points > best[2].points):
                 best = (before, *held)
                 if held[1].points >= LEAST_POINTS:
                     break

@@ -75,7 +75,8 @@ def is_odd(match: ScanStep, crowd_before: bool = False, crowd_now: bool = False)
     both = min(match.longer, match.shorter)
     if crowd_before or crowd_now:
         return not crowd_before and (match.fits < ALL_HIDDEN_FIT or (match.fits < HIDDEN_FIT and both > SIDES))
-    return match.fits < ONE_SIDED or (match.fits < NO_FIT and both > SIDES) or (match.fits < POOR_FIT and both > MUCH)
+    is_one_sided = match.fits < ONE_SIDED and match.points >= LEAST_POINTS
+    return is_one_sided or (match.fits < NO_FIT and both > SIDES) or (match.fits < POOR_FIT and both > MUCH)
 
 
 def difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:

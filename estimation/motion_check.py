@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from estimation.home_scan import Home
 from estimation.kept_scans import KeptScans, held_against, is_far
-from estimation.key_scan import KeyScan, difference, is_good, is_odd
+from estimation.key_scan import MUCH, KeyScan, difference, is_good, is_odd
 from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep
@@ -33,7 +33,7 @@ FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
 SEES_ALONG_M, LEAST_WAY_M = 0.008, 0.3  # along a bare street a laser sees no way; nothing is learned there, nor from less of a way
 KEY_S = 3.0  # a scan is compared with for so long, or until the robot has moved on by about `KEY_WAY_M`
-NEAR_KEYS = 1.5  # only within so many times that way does "it fits nowhere" mean another place
+NEAR_KEYS, NEVER_FITS = 1.5, 0.1  # beyond so many times that way hardly any point must fit, for round a corner everything looks different
 ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
 
 
@@ -64,7 +64,7 @@ class MotionCheck:
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
         self._kept = KeptScans()
-        self._is_elsewhere = False
+        self._is_elsewhere = self._is_surely_elsewhere = False
         self._home = Home()
         self._beams = (0.0, 0.0, 0.0)  # bearing of the first one, and from each to the next, rad; the laser's range, m
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
@@ -148,15 +148,17 @@ class MotionCheck:
         """Is it the same place? Another one only if two scans in a row say so, and the place before does not come into view again."""
         if is_good(match):
             home = self._seen_from_home(scan) if self._is_elsewhere else None
-            if home is not None and not is_good(home) and not is_odd(home, False, scan.is_crowded):
+            if home is not None and not (is_good(home) or self._is_surely_elsewhere or is_odd(home, False, scan.is_crowded)):
                 self._renew(scan)  # that tells neither way: it waits on
                 return
             self._is_elsewhere = home is not None and not is_good(home)
             self._weigh(scan, key, motion, match)
             self._looked_s = scan.at.stamp_s
             return
-        if not is_far(motion.pose, NEAR_KEYS) and is_odd(match, key.is_crowded, scan.is_crowded):
+        is_clear = match.fits < NEVER_FITS and min(match.longer, match.shorter) > MUCH
+        if (is_clear or not is_far(motion.pose, NEAR_KEYS)) and is_odd(match, key.is_crowded, scan.is_crowded):
             self._is_elsewhere = not self._is_elsewhere
+            self._is_surely_elsewhere = is_clear and not (key.is_crowded or scan.is_crowded)
             self._kept.forget()
             if self._is_elsewhere and not self._is_carried_off:
                 self._home = Home(key)
