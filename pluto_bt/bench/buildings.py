@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 Rng = np.random.Generator
 POST_CORNERS = 16
 DOOR_M = (0.8, 1.5)
-GRID_M = 0.02
 NEAR_M, SETTLED_M = 0.1, 1.0  # a camera that is so near to its distance for so much of the robot's way has arrived
 
 
@@ -122,25 +121,18 @@ def _text(points: Array) -> str:
 
 
 class Kept(NamedTuple):
-    """How a camera kept its distance: the farthest off, in metres.
+    """How a camera kept its distance from the nearest wall: the farthest off, in metres.
 
     Attributes:
-        straight_m: beside straight walls, from the nearest wall.
-        corner_m: anywhere else; too near counts from the nearest wall, too far from what the robot passes.
-        pocket_m: anywhere else, both from the nearest wall: what `corner_m` would be if no pocket were passed by.
+        straight_m: beside straight walls.
+        corner_m: anywhere else.
         straight_share: of the way that led beside straight walls.
 
-    What is left out, and why:
-        the way until the camera first had its distance (within `NEAR_M`) for `SETTLED_M`: the robot is still on its way to the wall;
-        too far, in pockets that are narrower than the robot at its distance on both sides. Between two walls that are 2.5 m apart a camera
-        that has to get from 0.8 m beside the one to 0.8 m beside the other is 1.25 m from both in the middle, whatever the path. So there
-        the hull counts, on which a ball rolls whose radius is the distance of the robot's middle from a straight wall: it says what is
-        passed by, knows nothing of the path, and grows no nearer to a path that stays away. Beside straight walls nothing is left out.
+    The way until the camera first had its distance (within `NEAR_M`) for `SETTLED_M` is left out: the robot is still on its way to the wall.
     """
 
     straight_m: float
     corner_m: float
-    pocket_m: float
     straight_share: float
 
 
@@ -153,9 +145,9 @@ def kept(track: Sequence[TrackPoint], wall: WallParameters, side: str, edges: Ar
     next_far = far[np.searchsorted(far, np.arange(len(poses)))]
     arrived = np.flatnonzero(way_m[next_far] - way_m >= SETTLED_M)
     if not len(arrived):
-        return Kept(math.inf, math.inf, math.inf, 0.0)
+        return Kept(math.inf, math.inf, 0.0)
     swing_m, middle_m = math.hypot(wall.camera_back_m, wall.camera_side_m), distance_m + wall.camera_side_m
-    return kept_distance(cameras[arrived[0] :], edges, distance_m, middle_m, middle_m + swing_m)
+    return kept_distance(cameras[arrived[0] :], edges, distance_m, middle_m + swing_m)
 
 
 def camera_path(poses: Sequence[Pose], back_m: float, side_m: float) -> Array:
@@ -175,27 +167,8 @@ def distances(points: Array, edges: Array) -> tuple[Array, Array]:
     return away[nearest], feet[nearest]
 
 
-def passed_m(points: Array, edges: Array, ball_m: float) -> Array:
-    """(n,) how far points (n, 2) are from what a ball of that radius rolls on: edges (k, 4), and the arcs that bridge what it does not fit into.
-
-    That is where no ball gets to that comes no nearer to any edge than its radius (the closing of the edges), on a grid of `GRID_M`.
-    """
-    from scipy.ndimage import distance_transform_edt
-
-    low = np.minimum(points.min(axis=0), edges.reshape(-1, 2).min(axis=0)) - 2.0 * ball_m - 1.0
-    high = np.maximum(points.max(axis=0), edges.reshape(-1, 2).max(axis=0)) + 2.0 * ball_m + 1.0
-    stands = np.zeros(np.ceil((high - low) / GRID_M).astype(int), dtype=bool)
-    for edge in edges:
-        share = np.linspace(0.0, 1.0, 2 + int(4.0 * math.dist(edge[:2], edge[2:]) / GRID_M))[:, None]
-        stands[tuple(((edge[:2] + share * (edge[2:] - edge[:2]) - low) / GRID_M).astype(int).T)] = True
-    has_room = GRID_M * distance_transform_edt(~stands) >= ball_m
-    is_swept = GRID_M * distance_transform_edt(~has_room) < ball_m
-    away = GRID_M * distance_transform_edt(is_swept)
-    return np.asarray(away[tuple(((points - low) / GRID_M).astype(int).T)])
-
-
-def kept_distance(cameras: Array, edges: Array, distance_m: float, ball_m: float, corner_m: float) -> Kept:
-    """Compare the distances of points (n, 2) from the nearest edge with the one to keep; too far at corners, from what a ball passes by.
+def kept_distance(cameras: Array, edges: Array, distance_m: float, corner_m: float) -> Kept:
+    """Compare the distances of points (n, 2) from the nearest edge with the one to keep.
 
     Where an end of an edge is nearer than `corner_m` to the camera, or to the place on the wall beside it, is a corner: there the robot turns,
     and so far behind it the camera swings.
@@ -205,6 +178,4 @@ def kept_distance(cameras: Array, edges: Array, distance_m: float, ball_m: float
     to_end_m = [np.hypot(*(places[:, None] - ends).transpose(2, 0, 1)).min(axis=1) for places in (cameras, feet)]
     is_straight = np.minimum(*to_end_m) > corner_m
     off = np.abs(away - distance_m)
-    of_passed = np.maximum(distance_m - away, np.minimum(passed_m(cameras, edges, ball_m), away) - distance_m)
-    straight_m, corner_m, pocket_m = (float(some.max(initial=0.0)) for some in (off[is_straight], of_passed[~is_straight], off[~is_straight]))
-    return Kept(straight_m, corner_m, pocket_m, float(is_straight.mean()))
+    return Kept(float(off[is_straight].max(initial=0.0)), float(off[~is_straight].max(initial=0.0)), float(is_straight.mean()))

@@ -19,12 +19,15 @@ from pluto_bt.skills.heading import GAIN_PER_S, SLOW_ANGLE_RAD
 from pluto_bt.skills.limits import Limits, clamp
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.steering import CLEAR_M
+from pluto_bt.skills.turn_search import LEFT_RAD
 from pluto_bt.skills.wall_kernels import bend_speed, seen_from, standing, way_lengths
 from pluto_bt.skills.wall_parameters import WallParameters
 from pluto_bt.skills.wall_path import Ball, WallPath, Wish, find_wall, foot_of, plan
 
 DISTANCE, SIDE = 1, 2  # our own in `force` of T = 3, where it has so many numbers: metres (0 = the parameter), and below 0 = wall on the right
+SWING_M = 0.4  # what is so narrow that the camera, which swings as the robot turns in its middle, comes so much too near, is not entered
 NEAR_M = 0.5  # so near to its path the robot is at the wall
+THERE_M, PASSED_M = 0.09, 0.3  # so near to where it turns it is there; and if that lies beside or behind it
 PURSUIT_S, SHORTEST_M, LONGEST_M = 1.0, 0.3, 0.9  # how far ahead on the path it steers to
 TURN_SHARE = 0.7  # of the turn rate is planned with; the rest is for what goes wrong
 COMFORT_SHARE = 0.4  # of the deceleration, before bends
@@ -34,6 +37,7 @@ PROGRESS_M = 0.5
 ALONE_M, ALONE_WITHIN_M = 0.08, 2.5  # a point without another in the squares around it; farther away beams lie wide apart
 LOST_S = 3.0  # a wall that is not seen for so long is lost
 AT_WALL, TO_WALL = "at the wall", "on the way to the wall"
+TURNED_RAD = math.radians(15.0)  # in a pocket it turns on the spot, until its way out lies ahead
 MOST_TURN_RAD, AHEAD_RAD = math.radians(60.0), math.radians(30.0)
 
 
@@ -78,8 +82,11 @@ class WallFollow:
         self.distance_m = given[DISTANCE] if given[DISTANCE] > 0.0 else p.distance_m
         middle_m = max(self.distance_m + p.camera_side_m, self._least_m)
         camera_m = (-p.camera_back_m, middle_m - self.distance_m, self.distance_m)
-        self.wish = Wish(middle_m, camera_m, p.fillet_m, max(p.opening_m, middle_m + self._least_m), self._least_m)
-        self.reach_m = max(p.look_m, middle_m + self.wish.fillet_m + p.lost_m)
+        turn_m = self._outline.reach_m + self._avoid.margin_m + CLEAR_M if self._most.min_turn_radius_m <= 0.0 else math.inf
+        opening_m, swing_m = max(p.opening_m, middle_m + self._least_m), math.hypot(*camera_m[:2])
+        self._wish = Wish(middle_m, camera_m, p.fillet_m, opening_m, self._least_m, turn_m)
+        self._opening_m = max(opening_m, 2.0 * (swing_m + self.distance_m - SWING_M))
+        self.reach_m = max(p.look_m, middle_m + p.fillet_m + p.lost_m)
         self._at: Planar = (0.0, 0.0, 0.0)
         self._path: WallPath | None = None
         self._scan_s = self._seen_s = -math.inf
@@ -113,10 +120,14 @@ class WallFollow:
         if now_s - self._seen_s > LOST_S:
             self._end = Along(0.0, 0.0, WallStatus.LOST, "the wall that was followed is not there any more")
             return self._end
-        along = self._drive(seen_from(self._path.points, self._at, mirrored))
-        return self._judged(along, now_s, odometry)
+        return self._judged(self._drive(self._path, mirrored), now_s, odometry)
 
     # ---------------------------------------------------------------- looking
+
+    @property
+    def wish(self) -> Wish:
+        """What the path should be; on the way to the wall, where little is seen around the robot, the ball stays smaller."""
+        return self._wish._replace(opening_m=self._opening_m) if self._is_there else self._wish
 
     def _standing(self, points: Array) -> Array:
         """(n, 2) mirrored, of what does not move. Without ghosts of beams that were dazzled: what would stand within the robot, or all alone."""
@@ -125,7 +136,7 @@ class WallFollow:
     def _look(self, stands: Array, robot: Planar, now_s: float) -> None:
         """Work out the path anew, from where the ball was last or else from the nearest wall. Where neither leads along the wall that is
         followed, the last path holds: a thin wall is hard to see edge-on."""
-        path = None if self._path is None else plan(stands, _ball_from(self._path.ball, self._at, robot), self.wish)
+        path = None if self._path is None else self._planned(self._path, stands, robot)
         if path is None or (self._is_there and path.off_m > NEAR_M):
             ball = find_wall(stands, self.wish)
             other = None if ball is None else plan(stands, ball, self.wish)
@@ -134,25 +145,40 @@ class WallFollow:
             return
         self._path, self._at, self._seen_s = path, robot, now_s
 
+    def _planned(self, last: WallPath, stands: Array, robot: Planar) -> WallPath | None:
+        """The path that follows on the last one."""
+        pocket = None if last.pocket is None else last.pocket.seen_from(self._at, robot)
+        return plan(stands, _ball_from(last.ball, self._at, robot), self.wish, pocket)
+
     # ---------------------------------------------------------------- driving
 
-    def _drive(self, path: Array) -> Along:
-        """Steer to a point ahead on the path, so slow that the bends up to there can be driven."""
-        foot = foot_of(path)
+    def _drive(self, plan: WallPath, robot: Planar) -> Along:
+        """Steer to a point ahead on the path, so slow that the bends up to there can be driven; in a pocket first to where it turns."""
+        path, turn = seen_from(plan.points, self._at, robot), plan.turn
+        if turn and _is_at(*path[turn, :2].tolist()):
+            self._path, path, turn = plan.turned(), path[turn:], 0
+        foot = foot_of(path[: turn + 1] if turn else path)
         off_m = math.hypot(*path[foot, :2])
         self._is_there = self._is_there or off_m < NEAR_M
         way_m = way_lengths(path, foot)
         speed_mps = self._speed_mps(path, foot, way_m)
         ahead_m = max(SHORTEST_M, min(LONGEST_M, PURSUIT_S * speed_mps)) + 0.5 * off_m
         aim = foot + int(np.searchsorted(way_m, ahead_m))
-        x, y = path[min(aim, len(path) - 1), :2].tolist()
+        x, y = path[min(aim, turn or len(path) - 1), :2].tolist()
         bearing_rad, away_m = math.atan2(y, x), math.hypot(x, y)
+        if plan.pocket is not None and plan.pocket.is_turned and abs(bearing_rad) > TURNED_RAD:
+            return self._turning(bearing_rad)
         turn_radps = speed_mps * 2.0 * math.sin(bearing_rad) / max(away_m, 0.1)
         size_rad = max(abs(turn_radps) / GAIN_PER_S, abs(bearing_rad) - AHEAD_RAD)  # what lies far aside is first turned to
         turn_rad = clamp(math.copysign(size_rad, bearing_rad), MOST_TURN_RAD)
         share = max(0.3, 1.0 - abs(turn_rad) / SLOW_ANGLE_RAD)
         text = AT_WALL if self._is_there else TO_WALL
         return Along(min(self.limits.speed_mps, speed_mps / share), self._side * turn_rad, WallStatus.FOLLOWING, text)
+
+    def _turning(self, bearing_rad: float) -> Along:
+        """On the spot, away from the wall."""
+        turn_rad = bearing_rad if bearing_rad < LEFT_RAD else -MOST_TURN_RAD
+        return Along(0.0, self._side * clamp(turn_rad, MOST_TURN_RAD), WallStatus.FOLLOWING, AT_WALL)
 
     def _speed_mps(self, path: Array, foot: int, way_m: Array) -> float:
         """As fast as the bends ahead allow, with time to brake before them."""
@@ -172,6 +198,11 @@ class WallFollow:
             self._end = Along(0.0, 0.0, WallStatus.STUCK, f"came no farther along the wall for {self.parameters.stuck_after_s:g} s")
             return self._end
         return along
+
+
+def _is_at(x_m: float, y_m: float) -> bool:
+    """True if a robot that drives ahead is at a place, or will come no nearer."""
+    return math.hypot(x_m, y_m) < (THERE_M if x_m > abs(y_m) else PASSED_M)
 
 
 def _ball_from(ball: Ball, before: Planar, now: Planar) -> Ball:

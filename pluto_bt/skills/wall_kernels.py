@@ -90,6 +90,21 @@ def keeps_away(path: Array, first: int, last: int, step: int, points: Array, lea
 
 
 @kernel
+def camera_off(path: Array, first: int, last: int, points: Array, x_m: float, y_m: float, away_m: float) -> Array:
+    """How much farther than `away_m` from the nearest of the points (m, 2) a camera is that the robot holds at x, y; at rows first up to last."""
+    off_m = np.zeros(max(min(last, path.shape[0]) - first, 0))
+    for k in range(off_m.shape[0]):
+        c, s = math.cos(path[first + k, HEADING]), math.sin(path[first + k, HEADING])
+        x, y = path[first + k, X] + c * x_m - s * y_m, path[first + k, Y] + s * x_m + c * y_m
+        least = np.inf
+        for i in range(points.shape[0]):
+            dx, dy = points[i, X] - x, points[i, Y] - y
+            least = min(least, dx * dx + dy * dy)
+        off_m[k] = math.sqrt(least) - away_m
+    return off_m
+
+
+@kernel
 def way_lengths(path: Array, first: int) -> Array:
     """How far it is along a path (n, 2 or more) from its point `first` to that one and all after it."""
     way_m = np.zeros(path.shape[0] - first)

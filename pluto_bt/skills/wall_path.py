@@ -4,7 +4,7 @@ Two balls roll along the wall. The first, as wide as the narrowest opening that 
 not fit into are passed by, posts that stand near belong to the wall. The second rolls along what the first has touched. It is larger than the
 distance to keep, so that it rounds off inner corners, and the path runs inside it at that distance from where it touches: arcs of the
 distance around outer corners, arcs of the fillet in inner ones. Where there is no room for that it shrinks, down to the first ball.
-Where the camera would be left too far from everything, or come too near, the path leans (`camera_lean.py`).
+Where the camera would be left too far from everything, the path leads into the pocket and around there (`pocket.py`).
 
 All is in the robot frame, metres and radians; for a wall on the right the caller mirrors points and path.
 """
@@ -16,23 +16,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pluto_bt.skills import wall_kernels
-from pluto_bt.skills.camera_lean import leaned
+from pluto_bt.skills import pocket, wall_kernels
 from pluto_bt.skills.outline import Array
+from pluto_bt.skills.pocket import Pocket, Visit, visited
 from pluto_bt.skills.rolling import roll
+from pluto_bt.skills.second_ball import ASIDE_M, BEHIND_M, STEP_M, inside
+from pluto_bt.skills.turning_place import Room
 from pluto_bt.skills.wall_kernels import keeps_away, nearest_of
 
-STEP_M = 0.06
-BEHIND_M = 0.9  # the first ball begins so far behind the robot …
-AHEAD_M = 3.0  # … and rolls on so far before it
-STEPS = 120
-ENOUGH_M = 1.5  # a path that ends earlier is none …
-ASIDE_M = 0.3  # a ball that is pushed farther aside where it begins does not fit between the sides
+AHEAD_M = 3.0  # so far before the robot the path must be free
+STEPS = 120  # of the first ball
+ENOUGH_M = 1.5  # a path that ends earlier is none
 GROWTH = 1.15  # of a ball that has found more room, from step to step
 LATER_M_PER_M = 0.1
 SLACK = 1.06  # a ball that has not so much more room would jam
 HALVINGS = 5
-LEAN_M = 0.35  # so far at most the path leans to the wall
+AT_PATH_M = 0.3  # a robot that is farther away looks for no pocket
 LEFT_RAD = (math.radians(-10.0), math.pi)  # where a wall on the left is looked for first
 
 
@@ -55,6 +54,7 @@ class Wish(NamedTuple):
         fillet_m: radius of the path in inner corners.
         opening_m: narrower openings are passed by.
         least_m: nearer than this the robot's middle may come to nothing.
+        turn_m: so far from everything it can turn on the spot.
     """
 
     distance_m: float
@@ -62,25 +62,43 @@ class Wish(NamedTuple):
     fillet_m: float
     opening_m: float
     least_m: float
+    turn_m: float
 
 
 class WallPath(NamedTuple):
-    """Points (n, 3) x, y, heading of the path, from behind the robot on; the distance that it really keeps; where the next ball begins."""
+    """What is followed.
+
+    Attributes:
+        points: (n, 3) x, y, heading, from behind the robot on or from it.
+        foot: the point where the robot is.
+        distance_m: that the path really keeps.
+        ball: where the next one begins.
+        turn: the point where the robot turns on the spot, in a pocket; 0 = nowhere, or there it is already.
+        pocket: the one that the robot is in or comes to.
+    """
 
     points: Array
     foot: int
     distance_m: float
     ball: Ball
+    turn: int
+    pocket: Pocket | None
 
     @property
     def off_m(self) -> float:
         """How far the robot is from the path."""
         return math.hypot(*self.points[self.foot, :2])
 
+    def turned(self) -> WallPath:
+        """The rest of the path, when the robot has come to where it turns."""
+        pocket = self.pocket._replace(is_turned=True) if self.pocket is not None else None
+        return self._replace(points=self.points[self.turn :], foot=0, turn=0, pocket=pocket)
+
 
 def warm() -> None:
     """Use the kernel once, so that no later use waits for its compilation."""
     roll(np.zeros((1, 2)), 0.0, 1.0, 1.0, STEP_M, 1)
+    pocket.warm()
     wall_kernels.warm()
 
 
@@ -101,31 +119,41 @@ def find_wall(points: Array, wish: Wish) -> Ball | None:
     return found if found is not None and found.radius_m >= wish.least_m else None
 
 
-def plan(points: Array, ball: Ball, wish: Wish) -> WallPath | None:
-    """The path along the wall on which the ball of the step before rests; None if no ball finds room there."""
+def plan(points: Array, ball: Ball, wish: Wish, last: Pocket | None = None) -> WallPath | None:
+    """The path along the wall on which the ball of the step before rests; None if no ball finds room there. `last`: its pocket."""
     rolled = _rolled(points, ball, wish)
     if rolled is None:
         return None
     ball, rows = rolled
+    path, distance_m = _widest(points, rows, ball.radius_m, wish)
+    if path is None:
+        return None
+    foot = foot_of(path)
+    visit = Visit(path, 0, None)
+    if last is not None or math.hypot(*path[foot, :2]) < AT_PATH_M:
+        visit = visited(path, foot, points, Room(wish.camera_m, wish.least_m, wish.turn_m), last)
+    foot = foot_of(visit.path[: visit.turn + 1] if visit.turn else visit.path)
+    next_ball = _next_ball(rows, visit.path[foot, 3:], ball.radius_m)
+    return WallPath(np.ascontiguousarray(visit.path[:, :3]), foot, distance_m, next_ball, visit.turn, visit.pocket)
+
+
+def _widest(points: Array, rows: Array, radius_m: float, wish: Wish) -> tuple[Array | None, float]:
+    """The path inside the largest second ball for which there is room, up to the full size; and the distance that it keeps."""
     chain = _without_doubles(rows[:, 2:])
-    end = rows[-1]
-    low, high, best = 0.0, 1.0, None
+    full_m = max(wish.distance_m + wish.fillet_m, radius_m)
+    low_m, high_m, best = radius_m, full_m, None
     for halving in range(HALVINGS + 1):
-        share = 1.0 if halving == 0 else 0.5 * (low + high)
-        path = _inside(chain, rows[0], end, ball.radius_m, share, wish)
+        large_m = full_m if halving == 0 else 0.5 * (low_m + high_m)
+        path = inside(chain, rows, radius_m, large_m, min(wish.distance_m, large_m))
         if path is not None and len(path) - foot_of(path) > ENOUGH_M / STEP_M and _is_clear(path, points, wish.least_m):
-            low, best = share, path
+            low_m, best = large_m, path
             if halving == 0:
                 break
         else:
-            high = share
-    path = best if best is not None else _inside(chain, rows[0], end, ball.radius_m, 0.0, wish)
-    if path is None:
-        return None
-    path = _leaning(path, points, wish)
-    foot = foot_of(path)
-    distance_m = min(wish.distance_m, ball.radius_m + low * (_full_m(ball.radius_m, wish) - ball.radius_m))
-    return WallPath(np.ascontiguousarray(path[:, :3]), foot, distance_m, _next_ball(rows, path[foot, 3:], ball.radius_m))
+            high_m = large_m
+    if best is None:
+        best = inside(chain, rows, radius_m, radius_m, min(wish.distance_m, radius_m))
+    return best, min(wish.distance_m, low_m)
 
 
 def _rolled(points: Array, ball: Ball, wish: Wish) -> tuple[Ball, Array] | None:
@@ -150,52 +178,6 @@ def _seated(points: Array, ball: Ball, radius_m: float) -> Ball | None:
 def _ball(row: Array, radius_m: float) -> Ball:
     x, y, touched_x, touched_y = row.tolist()
     return Ball(x, y, touched_x, touched_y, radius_m)
-
-
-def _full_m(radius_m: float, wish: Wish) -> float:
-    """Radius of the second ball where nothing is in its way."""
-    return max(wish.distance_m + wish.fillet_m, radius_m)
-
-
-def _inside(chain: Array, first: Array, end: Array, radius_m: float, share: float, wish: Wish) -> Array | None:
-    """The path (n, 5) x, y, heading, touched x, y inside a second ball that is `share` of the way from the first one to its full size."""
-    large_m = radius_m + share * (_full_m(radius_m, wish) - radius_m)
-    distance_m = min(wish.distance_m, large_m)
-    nx, ny = (first[0] - first[2]) / radius_m, (first[1] - first[3]) / radius_m
-    x_m, y_m = float(first[2] + large_m * nx), float(first[3] + large_m * ny)
-    rows = roll(chain, x_m, y_m, large_m, STEP_M, 2 * STEPS)
-    if len(rows) < 2 * STEPS or math.hypot(rows[0, 0] - x_m, rows[0, 1] - y_m) > ASIDE_M:
-        return None
-    normals = np.arctan2(rows[:, 1] - rows[:, 3], rows[:, 0] - rows[:, 2])
-    last = np.flatnonzero((rows[:, 2] == end[2]) & (rows[:, 3] == end[3]))
-    turned = np.remainder(normals[last] - math.atan2(end[1] - end[3], end[0] - end[2]) + math.pi, math.tau) - math.pi
-    over = last[turned >= 0.0]
-    if not len(over):
-        return None  # it never came to the end
-    count = max(int(over[0]), 2)  # beyond the last point nothing is known
-    rows, normals = rows[:count], normals[:count]
-    return _offset(rows, np.unwrap(normals), large_m - distance_m)
-
-
-def _offset(rows: Array, normals_rad: Array, inner_m: float) -> Array:
-    """The path `inner_m` from the ball's middle towards where it touches; where it stops and touches anew, an arc around its middle."""
-    steps = np.maximum(1, np.ceil(np.abs(np.diff(normals_rad)) * (inner_m + LEAN_M) / STEP_M)).astype(np.intp)
-    which = np.repeat(np.arange(len(steps)), steps)
-    share = (np.arange(len(which)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[which]
-    normal = normals_rad[which] + share * np.diff(normals_rad)[which]
-    middle = rows[which, :2] + share[:, None] * np.diff(rows[:, :2], axis=0)[which]
-    path = np.zeros((len(which), 5))
-    path[:, 0], path[:, 1] = middle[:, 0] - inner_m * np.cos(normal), middle[:, 1] - inner_m * np.sin(normal)
-    path[:, 2] = normal + 0.5 * math.pi
-    path[:, 3:] = rows[which, 2:]
-    return path
-
-
-def _leaning(path: Array, points: Array, wish: Wish) -> Array:
-    """The path, leaning such that the camera keeps its distance, where there is room for that."""
-    limits_m = -0.5 * wish.fillet_m, max(0.0, min(LEAN_M, wish.distance_m - wish.least_m))
-    lean = leaned(path, foot_of(path), points, wish.camera_m, limits_m)
-    return lean if lean is path or _is_clear(lean, points, wish.least_m) else path
 
 
 def foot_of(path: Array) -> int:

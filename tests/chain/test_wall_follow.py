@@ -48,7 +48,7 @@ def test_the_wall_on_the_left_is_followed_with_the_sensors_that_a_names(flags: i
     assert sent is not None and isinstance(sent.value, ActuatorState) and sent.value.flags == down
     assert r.status("avoidance").element == (0, 0), r.status("avoidance").text
     assert (r.status("avoidance").reason, r.status("avoidance").text) == ("", "at the wall")
-    assert 0.36 < max(speeds_mps) < 0.42 and min(speeds_mps) > 0.2, "refreshed long after drive's 4 s"
+    assert 0.36 < max(speeds_mps) < 0.42 and min(speeds_mps) > (0.1 if flags == 13 else 0.2), "refreshed long after drive's 4 s"
     assert np.mean(speeds_mps) > (0.32 if flags == 13 else 0.37), "an echo says how far, not where: with sonar alone the way is less straight"
     assert 1.6 - camera(r)[1] == pytest.approx(PARAMETERS.distance_m, abs=within_m)
     assert not r.contacts

@@ -43,7 +43,7 @@ def camera_m(run: Run, platform: str = "atrv2", side: float = 1.0, edges: Any = 
     return distances(camera_path([point.pose for point in run.track], wall.camera_back_m, side * wall.camera_side_m), np.array(edges))[0]
 
 
-@pytest.mark.parametrize("seed", [501, 502, 508])  # pioneer outside on the right, atrv2 inside on the right, atrv2 outside
+@pytest.mark.parametrize("seed", [501, 512, 5030])  # pioneer outside on the right, atrv2 outside on the left, and inside on the right, with pockets
 def test_once_around_a_building_nobody_chose(along: Any, seed: int) -> None:
     building, platform, side = Building.for_seed(seed)
     run = along(building.text, f'side="{side}" length_m="{1.15 * building.way_m:.1f}"')
@@ -77,6 +77,19 @@ def test_the_wall_is_passed_over_doors_and_followed_round_its_thin_end(along: An
     assert max(point.pose[0] for point in run.track) > 15.0 and run.final_pose[1] > 0.5, "to the other side"
     near = camera_m(run, edges=[(a, 0.0, b, 0.0) for a, b in pieces])[60:]
     assert min(near) > 0.55 and max(near) < 1.25
+
+
+@pytest.mark.parametrize(("width_m", "goes_in"), [(2.1, False), (2.8, True)])
+def test_a_slot_is_gone_into_to_its_end_if_the_camera_can_turn_there_and_else_passed_by(along: Any, width_m: float, goes_in: bool) -> None:
+    end = 5.0 + width_m
+    run = along(long(f'<wall id="w">-5,0 5,0 5,4 {end},4 {end},0 20,0</wall>'), f'length_m="{17.0 if goes_in else 8.0}"')
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    deepest = max(point.pose[1] for point in run.track)
+    assert deepest > 2.0 if goes_in else deepest < 0.0
+    assert run.final_pose[0] > end and run.final_pose[1] < 0.0, "and it goes on beyond it"
+    edges = [(-5.0, 0.0, 5.0, 0.0), (5.0, 0.0, 5.0, 4.0), (5.0, 4.0, end, 4.0), (end, 4.0, end, 0.0), (end, 0.0, 20.0, 0.0)]
+    away = [away for point, away in zip(run.track, camera_m(run, edges=edges), strict=True) if point.pose[0] > 3.0]
+    assert min(away) > 0.4 and max(away) < 1.2
 
 
 def test_the_node_turns_the_wrist_to_the_wall_and_back(along: Any, tmp_path: Path, scenario: Play) -> None:
