@@ -8,7 +8,7 @@ import numpy as np
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.seen_kernels import CAME, Counts
+from pluto_bt.skills.seen_kernels import CAME, SUDDEN, Counts
 from pluto_bt.skills.sonar import Mask, SonarRing
 
 ROUNDS = 4
@@ -50,9 +50,8 @@ class Approach:
         if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
         nearer_m = np.abs(first_m - ranges_m) if self._is_alone else first_m - ranges_m
-        came, is_small = (news == CAME) & self._is_alone, (news != 0) & (not self._is_alone)
         near = (ranges_m < HEAR_M) & (nearer_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
-        return self._those_who_walk(near, came, is_small) if near.any() or came.any() else NOTHING
+        return self._those_who_walk(near, news) if near.any() or (news >= CAME).any() else NOTHING
 
     def _without_losses(self, ranges_m: Array) -> Array:
         """The echoes, the last ones where they have only just stopped coming."""
@@ -60,15 +59,21 @@ class Approach:
         self._lost = np.where(is_silent, self._lost + 1, 0)
         return np.where(is_silent & (self._lost <= MOST_LOST), self._rounds[-1][0], ranges_m) if self._rounds else ranges_m
 
-    def _those_who_walk(self, near: Mask, came: Mask, is_small: Mask) -> Array:
-        """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came."""
+    def _those_who_walk(self, near: Mask, news: Counts) -> Array:
+        """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came.
+
+        An echo where a laser saw nothing that could be it is from no wall that a cone sweeps over. So it tells of somebody also while the robot
+        turns: surely enough where all was heard free a moment ago, perhaps where something is near all of a sudden.
+        """
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
         swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
         stays = heard_m[-1] * swept_rad < SWEPT_M  # where a cone ends while the robot turns fast is not known well enough to say what was free
-        moved = walked(heard_m, places, axes, near, is_small, half_rad)
-        moved[came & stays] = WALKS
+        is_small = (news != 0) & (not self._is_alone)
+        moved = walked(heard_m, places, axes, near, is_small & stays, half_rad)
+        moved[is_small & (news == SUDDEN) & (moved == 0)] = PERHAPS
+        moved[(news == CAME) & (stays | is_small)] = WALKS
         which = np.flatnonzero(moved)
         if not len(which):
             return NOTHING

@@ -2,7 +2,7 @@
 
 Everybody may be anywhere that his legs can have taken him to since he was seen: people turn on their heels. Who stops in view is thought to
 stay. Who went out of view is reckoned with for `memory_s`; what the sensors have seen to be free lately is left out for him by `stop_path`,
-which asks. Nothing is assumed of people who were never seen to walk.
+which asks. A single sign, be it an echo, is somebody for a moment. Nothing is assumed of people of whom there was no sign.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from pluto_bt.skills.walker import BODY_M, IN_VIEW_S, Walker
 REACH_M = 6.0  # farther away, the beams are too far apart to tell
 SCAN_S = 0.25  # a level scan counts for so much looking at most
 SAME_S = 3.0  # who was not seen for longer is not known again
-SURE = 2  # a single sighting may be a grazed edge
+SURE = 2  # a single sighting may be a grazed edge: he is reckoned with for a moment, but nobody else because of him
 MOST_WALKERS = 12
 PERHAPS_S = 1.0  # who is perhaps there is forgotten after so long, …
 OFTEN = 4  # … and surely there if he was heard so often meanwhile
@@ -40,8 +40,7 @@ class WalkerWatch:
         self._movers = Movers()
         self._before = ScansBefore()
         self._walkers: list[Walker] = []
-        self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count only where others walk, …
-        self._about_s = -math.inf  # … or did so till now
+        self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count for a moment
         self._doubted_s = -math.inf
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
@@ -74,24 +73,24 @@ class WalkerWatch:
         self._doubted_s = stamp_s
 
     def rows(self, now_s: float) -> Array:
-        """(n, WALKER_COLUMNS) of all who are known about; see `Walker.row`."""
+        """(n, WALKER_COLUMNS) of all who are known about, also those who were noticed once only, for a moment; see `Walker.row`."""
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
-        is_one_sure = any(one.times >= SURE for one in self._walkers) or len(self._perhaps) >= OFTEN
-        if is_one_sure or (self._perhaps and now_s - self._about_s < PERHAPS_S):
-            self._about_s = now_s
-            return np.array([one.row(now_s) for one in (*self._walkers, *self._perhaps)])  # where one walks, less is enough to believe in another
-        return NOBODY
+        known = (*self._walkers, *self._perhaps)
+        return np.array([one.row(now_s) for one in known]) if known else NOBODY
 
     def is_anybody_about(self, now_s: float) -> bool:
-        """Whether somebody was seen or heard walking lately, or a moment ago perhaps."""
-        return now_s - self._doubted_s < IN_VIEW_S or len(self.rows(now_s)) > 0
+        """Whether somebody was surely seen or heard walking lately, or a moment ago perhaps, if a laser cannot tell."""
+        if now_s - self._doubted_s < IN_VIEW_S:
+            return True
+        self.rows(now_s)
+        return any(one.times >= SURE for one in self._walkers) or len(self._perhaps) >= OFTEN
 
     def bodies(self, now_s: float) -> Array:
         """(n, 3) x m, y m, radius m of the discs in which those in view stand and walk."""
-        rows = self.rows(now_s)
-        if not len(rows):
+        if not self.is_anybody_about(now_s):
             return NO_BODY
+        rows = self.rows(now_s)
         seen = rows[rows[:, IN_VIEW] == 1.0]
         return np.column_stack((seen[:, :2], seen[:, SPREAD_M] + 2.0 * BODY_M))
 
