@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 
 from pluto_bt import __version__
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.modules.robot_file import SHIPPED
 from pluto_bt.record.entries import Run
 from pluto_bt.resume import Resumption

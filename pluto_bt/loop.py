@@ -139,7 +139,7 @@ class Loop:
         """Why the mission waits for an operator where there is none, in virtual time without a gateway; "" else."""
         system = self._system
         stop = system.latch.hold(OPERATOR_STOP)
-        if (stop is None and not self.held) or system.options.takes_orders or not isinstance(system.scheduler, Lockstep):
+        if (stop is None and not self.held) or system.options.doors.take_orders or not isinstance(system.scheduler, Lockstep):
             return ""
         mission = system.executive.core.mission
         if self.held or stop is None or mission is None or mission.state != PAUSED:

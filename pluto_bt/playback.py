@@ -19,7 +19,7 @@ import msgspec
 from pluto_bt.behaviours.robot import Ticket
 from pluto_bt.blackboard import TOPICS, Blackboard, Inbox
 from pluto_bt.blackboard.messages import ActuatorState
-from pluto_bt.commands.inputs import Inputs, Request, read_inputs
+from pluto_bt.inputs.reading import Inputs, Request, read_inputs
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.job_runner import JobRunner
 from pluto_bt.modules.robot_link import RobotLink

@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.modules.resume_parameters import ResumeParameters
 from pluto_bt.runtime.state_folder import state_path
 from pluto_bt.source import Faults, Place

@@ -8,9 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from pluto_bt.blackboard.messages import Event
-from pluto_bt.gateway.access import Access
-from pluto_bt.gateway.listen import Address
-from pluto_bt.gateway.ssh_link import SshRequest
+from pluto_bt.doors import CLOSED, Doors
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.runtime.clock import StepClock
@@ -42,13 +40,7 @@ class Options:
     seed: int = 0
     max_time_s: float | None = None
     trace_path: Path | None = None
-    has_gateway: bool = False
-    gateway: Address | None = None
-    gateway_access: Access | None = None
-    gateway_audit: Path | None = None
-    web: Address | None = None
-    groot: Address | None = None
-    ssh: SshRequest | None = None
+    doors: Doors = CLOSED
     record: RecordRequest | None = None
     own_clock: StepClock | None = None
     load: Callable[..., Mission] = load_mission
@@ -61,12 +53,8 @@ class Options:
     def asked_modules(self) -> set[str]:
         """The modules that are there because somebody asked for them, or because of what is fixed to the robot and is no device of the simulator."""
         asked = {
-            "gateway": self.takes_orders, "recorder": self.record is not None, "groot": self.groot is not None, "ssh": self.ssh is not None,
+            "gateway": self.doors.take_orders, "recorder": self.record is not None, "groot": self.doors.groot is not None,
+            "ssh": self.doors.ssh is not None,
             "arm": self.robot.devices.arm is not None,
         }  # fmt: skip
         return {name for name, is_asked in asked.items() if is_asked}
-
-    @property
-    def takes_orders(self) -> bool:
-        """True if people or programs can command while it runs."""
-        return self.has_gateway or self.web is not None

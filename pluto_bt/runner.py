@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import secrets
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -20,12 +19,8 @@ from pluto_bt.behaviours.plan_path import Planning
 from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
-from pluto_bt.commands.doors import groot_address, web_address
-from pluto_bt.commands.inputs import Inputs
-from pluto_bt.gateway.access import Access
-from pluto_bt.gateway.audit import default_path
-from pluto_bt.gateway.listen import Address, is_free, parse_address
-from pluto_bt.gateway.ssh_link import SshRequest
+from pluto_bt.doors import CLOSED, Doors
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.loop import Loop, rehearse
 from pluto_bt.maps.kernel import telling_of_compilation
 from pluto_bt.modules.journal_keeper import JournalKeeper
@@ -49,11 +44,9 @@ class Runner:
     def __init__(self, inputs: Inputs, mission: Mission, clock: VirtualClock | MonotonicClock, options: Options) -> None:
         self.inputs = inputs
         self.mission = mission
-        with_jobs = options.takes_orders or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
-        with_walls = options.takes_orders or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
-        quiet = replace(
-            options, trace_path=None, has_gateway=False, web=None, groot=None, ssh=None, record=None, own_clock=None, on_event=lambda event: None
-        )
+        with_jobs = options.doors.take_orders or any(isinstance(tracked.node, (JobLeaf, *USES_THE_MAP)) for tracked in mission.nodes())
+        with_walls = options.doors.take_orders or any(isinstance(tracked.node, WallFollow) for tracked in mission.nodes())
+        quiet = replace(options, trace_path=None, doors=CLOSED, record=None, own_clock=None, on_event=lambda event: None)
         with telling_of_compilation(options.on_compiling):
             rehearse(System(quiet, VirtualClock()), with_jobs, with_walls)
         if isinstance(clock, MonotonicClock):
@@ -154,12 +147,7 @@ def make_runner(
     trace_path: str | Path | None = None,
     record: str | Path | None = None,
     resume: ResumeRequest | None = None,
-    gateway: str | None = None,
-    gateway_access: Access | None = None,
-    gateway_audit: str | Path | None = None,
-    web: str | None = None,
-    groot: str | None = None,
-    ssh: SshRequest | None = None,
+    doors: Doors = CLOSED,
     nodes: Sequence[type] = (),
     on_event: Callable[[Event], None] = lambda event: None,
     on_progress: Callable[[System], None] = lambda system: None,
@@ -169,7 +157,7 @@ def make_runner(
 
     With `resume` a journal is kept, and looked at first.
 
-    Raises: InputError if a leaf cannot be made, or the gateway cannot listen.
+    Raises: InputError if a leaf cannot be made, or a door not be opened.
     """
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
     own_clock = StepClock() if realtime else None
@@ -186,18 +174,10 @@ def make_runner(
     resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
     if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
-    if ssh is not None and gateway is None and not (realtime and is_free(Address())):
-        gateway = "127.0.0.1:0"  # who comes by ssh talks through the gateway, wherever it listens
-    if ssh is not None and gateway_access is not None:
-        token = secrets.token_hex(16)
-        ssh = ssh._replace(token=token if gateway_access.keys else "", certificate=gateway_access.certificate)
-        gateway_access = gateway_access.with_token("", token) if gateway_access.keys else gateway_access
     options = Options(
         world=inputs.world, robot=inputs.robot, params_path=inputs.params, map=inputs.map, start=inputs.start, seed=inputs.seed,
-        max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, has_gateway=realtime or gateway is not None,
-        gateway=parse_address(gateway) if gateway is not None else None, gateway_access=gateway_access,
-        gateway_audit=Path(gateway_audit) if gateway_audit else default_path(), web=web_address(web) if web is not None else None,
-        groot=groot_address(groot) if groot is not None else None, ssh=ssh, load=load, load_checked=load_to_order,
+        max_time_s=max_time_s, trace_path=Path(trace_path) if trace_path else None, doors=doors.opened(realtime=realtime),
+        load=load, load_checked=load_to_order,
         on_event=on_event, on_progress=on_progress, on_compiling=on_compiling,
         record=None if record is None else record_request(Path(record), inputs, mission, realtime, resumption), own_clock=own_clock,
     )  # fmt: skip

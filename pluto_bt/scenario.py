@@ -11,7 +11,8 @@ from typing import Any
 
 from pluto_bt.behaviours.ports import text_of
 from pluto_bt.blackboard.messages import Event
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.doors import Doors
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
 from pluto_bt.track import TrackPoint
 
@@ -99,9 +100,10 @@ class Play:
         events: list[Event] = []
         leaves = tuple(nodes)
         inputs = read_inputs(request, self._folder, leaves)
-        how: dict[str, Any] = {"realtime": realtime, "speed": speed, "max_time_s": max_time_s, "gateway": gateway, "web": web,
-                               "groot": groot, "record": record}  # fmt: skip
-        runner = make_runner(inputs, nodes=leaves, on_event=events.append, **how)
+        runner = make_runner(
+            inputs, nodes=leaves, on_event=events.append, realtime=realtime, speed=speed, max_time_s=max_time_s, record=record,
+            doors=Doors.at(gateway=gateway, web=web, groot=groot),
+        )  # fmt: skip
         runner.run()
         return Run(runner, events)
 

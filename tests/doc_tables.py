@@ -10,6 +10,7 @@ import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
+from pluto_bt.behaviours.missing import NAV2_MISSING
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS
 from pluto_bt.behaviours.reasons import REASONS, WAITING
 from pluto_bt.blackboard import TOPICS
@@ -57,7 +58,7 @@ def _types(builtin: bool, *kinds: str, of_nav2: bool = False) -> list[NodeType]:
 
 
 def _is_of_nav2(node: NodeType) -> bool:
-    return bool(node.missing) or node.make.__module__.startswith(("pluto_bt.behaviours.nav2", "pluto_bt.trees.nav2"))
+    return node.name in NAV2_MISSING or getattr(node.make, "__module__", "").startswith(("pluto_bt.behaviours.nav2", "pluto_bt.trees.nav2"))
 
 
 def _port(port: PortModel) -> str:
@@ -79,9 +80,9 @@ def nodes(builtin: bool, *kinds: str, of_nav2: bool = False) -> str:
     return table(("node", "ports", "what it does"), ((f"`{node.name}`", _ports(node), node.description) for node in types if not node.missing))
 
 
-def missing_nodes() -> str:
-    """Nodes of Nav2 that are known by name alone."""
-    types = _types(False, "Action", "Condition", of_nav2=True)
+def missing_nodes(*, of_nav2: bool) -> str:
+    """Nodes that are known by name alone."""
+    types = _types(False, "Action", "Condition", of_nav2=of_nav2)
     return table(("node", "what is missing"), ((f"`{node.name}`", node.missing) for node in types if node.missing))
 
 
@@ -301,7 +302,8 @@ TABLES: dict[str, Callable[[], str]] = {
     "nav2-controls": lambda: nodes(False, "Control", "Decorator", of_nav2=True),
     "nav2-actions": lambda: nodes(False, "Action", of_nav2=True),
     "nav2-conditions": lambda: nodes(False, "Condition", of_nav2=True),
-    "nav2-missing": missing_nodes,
+    "missing": lambda: missing_nodes(of_nav2=False),
+    "nav2-missing": lambda: missing_nodes(of_nav2=True),
     "motion-ports": motion_ports,
     "topics": topics,
     "commands": commands,

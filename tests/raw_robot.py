@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, Pair
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
 from pluto_bt.runtime.clock import NS
 

@@ -27,7 +27,8 @@ MAY = {
                        "pluto_bt.behaviours", "estimation"),
     "pluto_bt.groot": ("pluto_bt.source", "pluto_bt.behaviours", "pluto_bt.trees"),
 }  # fmt: skip
-TOP_FLOOR = ("pluto_bt.modules", "pluto_bt.commands", "pluto_bt.bench", "pluto_bt.platforms")  # and every file directly in pluto_bt/
+# … and every file directly in pluto_bt/
+TOP_FLOOR = ("pluto_bt.modules", "pluto_bt.inputs", "pluto_bt.commands", "pluto_bt.bench", "pluto_bt.platforms")
 
 
 def package_of(name: str) -> str:
@@ -61,6 +62,22 @@ def test_a_file_imports_only_from_its_own_floor_or_below(path: Path) -> None:
     allowed = (*MAY[package], package)
     wrong = sorted(name for name in imports_of(path) if package_of(name) not in allowed and name != "pluto_bt.__version__")
     assert not wrong, f"{module} must not import {', '.join(wrong)}"
+
+
+# Of the top floor: package → who may use it
+USED_BY = {
+    "pluto_bt.commands": ("pluto_bt.commands", "pluto_bt.cli"),
+    "pluto_bt.bench": ("pluto_bt.bench", "pluto_bt.commands"),
+    "pluto_bt.inputs": ("pluto_bt.inputs", "pluto_bt.commands", "pluto_bt.bench", "pluto_bt.runner", "pluto_bt.scenario", "pluto_bt.resume",
+                        "pluto_bt.box_files", "pluto_bt.playback", "pluto_bt.contract_report"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("package", USED_BY)
+def test_the_top_floor_has_an_order_too(package: str) -> None:
+    modules = {path: ".".join(path.relative_to(ROOT).with_suffix("").parts) for path in FILES}
+    users = {package_of(module) for path, module in modules.items() if package in {package_of(name) for name in imports_of(path)}}
+    assert sorted(users - set(USED_BY[package])) == []
 
 
 def test_every_package_is_described_in_the_architecture_page() -> None:

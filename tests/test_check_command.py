@@ -13,7 +13,7 @@ import pytest
 
 from pluto_bt.cli import main
 from pluto_bt.commands.fault_formats import as_github, as_sarif
-from pluto_bt.commands.ways_in_world import Ways, inner_radius_m
+from pluto_bt.inputs.ways_in_world import Ways, inner_radius_m
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.source import Fault

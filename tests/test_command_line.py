@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from pluto_bt.commands import extras
-from pluto_bt.commands.files import package_root
+from pluto_bt.files import package_root
 from pluto_bt.source import Faults
 
 OLD_LOCALE = {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}

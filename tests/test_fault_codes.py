@@ -8,7 +8,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 TREES = ROOT / "pluto_bt/trees"
-SOURCES = [*(TREES / "loader").glob("*.py"), *(TREES / "checks").glob("*.py"), ROOT / "pluto_bt/commands/legs_in_world.py"]
+SOURCES = [*(TREES / "loader").glob("*.py"), *(TREES / "checks").glob("*.py"), ROOT / "pluto_bt/inputs/legs_in_world.py"]
 NOT_OF_THE_FILE = {"leaf-failed", "setup-failed"}  # a leaf's own code failed: docs/leaves.md
 TELLS = {"error", "warning", "late", "tell", "report", "_error"}
 

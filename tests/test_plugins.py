@@ -10,7 +10,7 @@ import py_trees.ports
 import pytest
 
 from pluto_bt.behaviours.say import Say
-from pluto_bt.commands.plugins import load_plugins
+from pluto_bt.inputs.plugins import load_plugins
 from pluto_bt.runtime import VirtualClock
 from pluto_bt.source import Fault, Faults
 from pluto_bt.trees import check_mission, enums, load_mission

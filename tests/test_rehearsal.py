@@ -16,7 +16,7 @@ FIELD = """<world name="field"><wall>-40,-40 40,-40 40,40 -40,40 -40,-40</wall>
 """
 TELL_LATE = """
 import gc, sys
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.maps.kernel import Kernel
 from pluto_bt.runner import make_runner
 

@@ -12,7 +12,7 @@ from typing import Any
 
 from pluto_bt.behaviours.reasons import REASONS
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.maps.script import Action, Carry, FaultAction, Put
 from pluto_bt.runner import Runner, make_runner
 

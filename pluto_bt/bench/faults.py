@@ -17,8 +17,8 @@ from pluto_bt.bench.fault_plays import CAUSES, Play
 from pluto_bt.bench.random_places import PLACES
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.why_score import Asked, Broken, questions
-from pluto_bt.commands.files import package_root
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.files import package_root
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.maps.script import At
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import load_robot_file

@@ -16,8 +16,8 @@ from estimation.odometer import Odometer
 from estimation.se2 import IDENTITY, Pose2, arc, compose
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.blackboard.messages import ActuatorState
-from pluto_bt.commands.files import package_root
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.files import package_root
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.runner import Runner, make_runner

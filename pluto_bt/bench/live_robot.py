@@ -17,9 +17,10 @@ from typing import Any
 import numpy as np
 
 from pluto_bt.blackboard.messages import Event, MissionState
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.doors import Doors
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.ssh_link import SshRequest
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import make_runner
 from pluto_bt.runtime.clock import NS, wall_ns
 
@@ -57,8 +58,9 @@ def main(words: list[str]) -> None:
     settings = [word for word in words if word != keys]
     request = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=-1"], set=settings)
     events: list[Event] = []
-    doors: dict[str, Any] = {"ssh": SshRequest(Address("127.0.0.1", 0), Path(keys)), "web": "127.0.0.1:0"} if keys else {}
-    runner = make_runner(read_inputs(request), realtime=True, gateway="127.0.0.1:0", on_event=events.append, **doors)
+    anywhere = Address(port=0)
+    doors = Doors(gateway=anywhere, web=anywhere, ssh=SshRequest(anywhere, Path(keys))) if keys else Doors(gateway=anywhere)
+    runner = make_runner(read_inputs(request), realtime=True, doors=doors, on_event=events.append)
     system = runner.system
     ear = Ear(system.simulator.devices["base"])
     ticks_ms: list[float] = []

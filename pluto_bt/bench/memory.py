@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pluto_bt.bench.resident import resident_mb
 from pluto_bt.bench.row import BenchRow
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import make_runner
 from pluto_bt.system import System
 

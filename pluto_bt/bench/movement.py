@@ -16,7 +16,7 @@ from pluto_bt.bench.buildings import Building, kept
 from pluto_bt.bench.row import BenchRow
 from pluto_bt.bench.towns import Town
 from pluto_bt.bench.yards import Yard
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.result import RunResult
 from pluto_bt.runner import Runner, make_runner

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from pluto_bt.bench.courses import Course, Surveyor
 from pluto_bt.bench.random_places import PLACES
 from pluto_bt.bench.row import BenchRow
-from pluto_bt.commands.files import package_root
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.files import package_root
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile, load_robot_file
 from pluto_bt.runner import Runner, make_runner

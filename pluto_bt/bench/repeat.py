@@ -12,7 +12,7 @@ REPEATS = 200
 
 def trace_of(seed: int) -> str:
     """The hash of a short patrol."""
-    from pluto_bt.commands.inputs import Request, read_inputs
+    from pluto_bt.inputs.reading import Request, read_inputs
     from pluto_bt.runner import make_runner
 
     request = Request("patrol.xml", world="yard.xml", port=["goals=8,3"], seed=str(seed))

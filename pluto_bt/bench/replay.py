@@ -11,7 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from pluto_bt.bench.row import BenchRow
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.doors import CLOSED, Doors
+from pluto_bt.gateway.listen import Address
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.playback import replay_file
 from pluto_bt.record.box import open_box
 from pluto_bt.runner import make_runner
@@ -60,7 +62,7 @@ def repeat(number: int, folder: Path) -> Repetition:
     platform = ("pioneer", "atrv2")[number // 8 % 2]
     request = Request(str(folder / "m.xml"), world=str(folder / "w.xml"), start="-4.5,0,0", platform=platform, seed=str(number))
     make_runner(read_inputs(request), realtime=in_threads, speed=SPEED, max_time_s=MOST_S, record=folder / "a.mcap",
-                gateway="127.0.0.1:0" if in_threads else None).run()  # fmt: skip
+                doors=Doors(gateway=Address(port=0)) if in_threads else CLOSED).run()  # fmt: skip
     box = open_box(folder / "a.mcap", "a.mcap", Faults())
     assert box is not None  # it was just written
     found = replay_file(folder / "a.mcap")

@@ -35,7 +35,7 @@ class Outcome(NamedTuple):
 
 def run_once(folder: str, policy: str, kill_at: int = 0) -> None:
     """One run in this process; with `kill_at` it kills itself after that many steps of the executive. Leaves `run.json` and `said.txt`."""
-    from pluto_bt.commands.inputs import Request, read_inputs
+    from pluto_bt.inputs.reading import Request, read_inputs
     from pluto_bt.resume import ResumeRequest
     from pluto_bt.runner import make_runner
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pluto_bt.bench.row import BenchRow
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
 
 PATROL = Request("patrol.xml", world="yard.xml", port=["goals=8,3;13.5,3;10.5,8;2,3.5", "rounds=20"])

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from pluto_bt.bench.row import BenchRow
-from pluto_bt.commands.files import package_root
-from pluto_bt.commands.inputs import Inputs
+from pluto_bt.files import package_root
+from pluto_bt.inputs.reading import Inputs
 from pluto_bt.maps.load import load_world
 from pluto_bt.maps.script import At, FaultAction
 from pluto_bt.maps.world import Marker, World

@@ -11,15 +11,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pluto_bt.commands.fault_formats import FORMATS
-from pluto_bt.commands.files import find_shipped, shipped_names
-from pluto_bt.commands.option_values import Pose, read_start
 from pluto_bt.commands.options import Parser
+from pluto_bt.files import find_shipped, shipped_names
+from pluto_bt.inputs.option_values import Pose, read_start
 from pluto_bt.source import Fault, Faults, InputError, Place, did_you_mean
 from pluto_bt.source.faults import TOO_MANY
 from pluto_bt.source.text import read_bytes
 
 if TYPE_CHECKING:
-    from pluto_bt.commands.legs_in_world import LegTold
+    from pluto_bt.inputs.legs_in_world import LegTold
     from pluto_bt.maps.world import World
     from pluto_bt.modules.robot_file import RobotFile
 
@@ -55,8 +55,8 @@ def _parser() -> Parser:
 
 def _check_options(args: argparse.Namespace, start: Pose | None, faults: Faults) -> tuple[World | None, RobotFile | None]:
     """The faults of what serves all the files: plugins, and the world and the robot to check against."""
-    from pluto_bt.commands.inputs import check_world, read_robot
-    from pluto_bt.commands.plugins import load_plugins
+    from pluto_bt.inputs.plugins import load_plugins
+    from pluto_bt.inputs.reading import check_world, read_robot
 
     load_plugins(args.plugin, faults)
     if args.world is not None:
@@ -72,17 +72,17 @@ def _check(
     if Path(name).suffix.lower() == ".toml" or (path is None and name in ROBOTS):
         _check_robot(name, faults)
     elif path is not None and (path.suffix.lower() in (".yaml", ".yml", ".map") or _is_world(path)):
-        from pluto_bt.commands.inputs import check_world
+        from pluto_bt.inputs.reading import check_world
 
         check_world(name, args.platform, faults)
     elif path is None:
         _no_such_file(name, faults)
     else:
-        from pluto_bt.commands.missions import check_mission_file
+        from pluto_bt.inputs.missions import check_mission_file
 
         examined = check_mission_file(name, args.tree, args.port, args.model, faults)
         if examined is not None and examined.plan is not None and (world is not None or robot is not None):
-            from pluto_bt.commands.mission_in_world import check_on_robot
+            from pluto_bt.inputs.mission_in_world import check_on_robot
 
             return check_on_robot(examined.plan, world, robot, start, faults)
     return []
@@ -123,7 +123,7 @@ def _print(args: argparse.Namespace, faults: Faults, legs: list[LegTold]) -> Non
     for leg in legs:
         print(leg.as_text())
     if legs:
-        from pluto_bt.commands.legs_in_world import sum_of
+        from pluto_bt.inputs.legs_in_world import sum_of
 
         print(sum_of(legs))
     print(f"{len(args.files)} checked, {_count(found, 'error')}, {_count(found, 'warning')}", file=sys.stderr)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import sys
 
-from pluto_bt.commands.files import find_file
 from pluto_bt.commands.options import Parser
+from pluto_bt.files import find_file
 from pluto_bt.source import Faults
 
 

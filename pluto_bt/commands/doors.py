@@ -1,29 +1,20 @@
-"""The doors of a run to the outside: gateway, web console, ssh, the monitor of Groot2.
-
-Each that cannot be opened is refused before anything is loaded.
-"""
+"""What the command line says of a run's doors: each that cannot be opened is refused before anything is loaded."""
 
 from __future__ import annotations
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from pluto_bt.commands.extras import need
 from pluto_bt.source import Faults, InputError, Place
-from pluto_bt.source.faults import fail
 
 if TYPE_CHECKING:
+    from pluto_bt.doors import Doors
     from pluto_bt.gateway.access import Access
     from pluto_bt.gateway.listen import Address
     from pluto_bt.gateway.ssh_link import SshRequest
-
-
-class Doors(NamedTuple):
-    """Who may come in by the gateway, and where ssh listens (None: nowhere)."""
-
-    access: Access
-    ssh: SshRequest | None
 
 
 def add_door_options(parser: argparse.ArgumentParser) -> None:
@@ -38,79 +29,66 @@ def add_door_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--groot", metavar="[HOST:]PORT", help="serve Groot2's live monitor, read-only (Groot2's own port is 1667)")
 
 
-def check_doors(args: argparse.Namespace, faults: Faults) -> Doors:
-    """The faults of all that was asked for."""
+def read_doors(args: argparse.Namespace, faults: Faults) -> Doors:
+    """The doors asked for; those with faults stay closed."""
+    from pluto_bt.doors import Doors
     from pluto_bt.gateway.access import read_access
 
     access_faults = Faults()
     access = read_access(args.gateway_tls, args.gateway_tokens, access_faults)
     faults.extend(access_faults.in_order())
-    if not access_faults.has_errors:
-        _check_gateway(args.gateway, access, faults)
-        check_web(args.web, faults, access)
-    _check_groot(args.groot, faults)
-    return Doors(access, _read_ssh(args.ssh, args.ssh_keys, faults))
+    is_known_who = not access_faults.has_errors
+    return Doors(
+        gateway=_read_gateway(args.gateway, access, faults) if is_known_who else None,
+        web=read_web(args.web, faults, access) if is_known_who else None,
+        groot=_read_groot(args.groot, faults), ssh=_read_ssh(args.ssh, args.ssh_keys, faults),
+        access=access, audit=Path(args.gateway_audit) if args.gateway_audit else None,
+    )  # fmt: skip
 
 
-def _check_gateway(address: str | None, access: Access, faults: Faults) -> None:
-    """An asked address that does not exist, is in use or not the loopback is refused before anything is loaded."""
-    if address is None:
-        return
-    from pluto_bt.gateway.listen import open_listener, parse_address
+def _read_gateway(text: str | None, access: Access, faults: Faults) -> Address | None:
+    """An asked address that does not exist, is in use or not the loopback is refused."""
+    from pluto_bt.gateway.listen import parse_address
 
-    try:
-        open_listener(parse_address(address), access).close()
-    except InputError as error:
-        faults.extend(error.faults)
+    return _free(text, parse_address, "--gateway", access, faults)
 
 
-def web_address(text: str) -> Address:
-    """`--web HOST:PORT`. Raises: InputError."""
-    from pluto_bt.gateway.listen import WEB_PORT, parse_address
-
-    return parse_address(text, "--web", WEB_PORT)
-
-
-def check_web(text: str | None, faults: Faults, access: Access | None = None) -> None:
+def read_web(text: str | None, faults: Faults, access: Access | None = None) -> Address | None:
     """The address of the web console, whether it can be had, and whether its library is there."""
+    from pluto_bt.doors import web_address
+
+    if text is not None:
+        need("web", "--web", faults)
+    return _free(text, web_address, "--web", access, faults)
+
+
+def _free(text: str | None, parse: Callable[[str], Address], option: str, access: Access | None, faults: Faults) -> Address | None:
+    """The address, if one can listen there."""
     if text is None:
-        return
-    need("web", "--web", faults)
+        return None
     from pluto_bt.gateway.listen import open_listener
 
     try:
-        open_listener(web_address(text), access, "--web").close()
+        address = parse(text)
+        open_listener(address, access, option).close()
     except InputError as error:
         faults.extend(error.faults)
+        return None
+    return address
 
 
-def groot_address(text: str) -> Address:
-    """`--groot [HOST:]PORT`, on the loopback: 127.0.0.1 without a host, 1667 without a port. Raises: InputError."""
-    from pluto_bt.gateway.listen import Address, parse_address
-
-    place = Place("--groot")
-    text = text if ":" in text or text.isdigit() else f"{text}:1667"
-    try:
-        address = parse_address(text)
-    except InputError:
-        fail(place, "bad-address", f'bad address "{text}"', expected="[HOST:]PORT with a port of 0 to 65534", found=text)
-    if address.host not in ("127.0.0.1", "localhost"):
-        mend = f"listen on 127.0.0.1:{address.port} and reach it through ssh: ssh -L {address.port}:127.0.0.1:{address.port} ROBOT"
-        fail(place, "not-loopback", f"the monitor does not listen on {address.host}", expected="127.0.0.1 or localhost", found=text, mend=mend)
-    if address.port == 65535:
-        fail(place, "bad-address", "the monitor needs the port after this one too", expected="a port of 0 to 65534", found=text)
-    return Address("127.0.0.1", address.port)
-
-
-def _check_groot(text: str | None, faults: Faults) -> None:
+def _read_groot(text: str | None, faults: Faults) -> Address | None:
     """The address of the monitor, and whether its library is there."""
     if text is None:
-        return
+        return None
+    from pluto_bt.doors import groot_address
+
     need("groot", "--groot", faults)
     try:
-        groot_address(text)
+        return groot_address(text)
     except InputError as error:
         faults.extend(error.faults)
+        return None
 
 
 def _read_ssh(text: str | None, keys: str | None, faults: Faults) -> SshRequest | None:

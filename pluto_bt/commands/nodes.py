@@ -14,7 +14,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--builtin", action="store_true", help="with --format xml: the nodes of BehaviorTree.CPP too, which Groot2 knows by itself")
     parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes are listed too")
     args = parser.parse_args(argv)
-    from pluto_bt.commands.plugins import load_plugins
+    from pluto_bt.inputs.plugins import load_plugins
     from pluto_bt.trees.dump import nodes_table, nodes_xml
     from pluto_bt.trees.loader.registry import node_types
 

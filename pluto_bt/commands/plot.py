@@ -58,7 +58,7 @@ def seen_from_above(box: Box, asked: str | None) -> tuple[World, Driven]:
 
 def _surroundings(box: Box, asked: str | None) -> tuple[World, list[tuple[float, float]]]:
     """The world and the robot's outline, from the files in the box."""
-    from pluto_bt.commands.files import find_file
+    from pluto_bt.files import find_file
     from pluto_bt.maps.load import load_world
     from pluto_bt.maps.world import World
     from pluto_bt.modules.robot_file import load_robot_file

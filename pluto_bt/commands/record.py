@@ -25,8 +25,8 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--seconds", metavar="S", help="stop after so much time of the robot's clock")
     args = parser.parse_args(argv)
     from pluto_bt.commands.extras import need
-    from pluto_bt.commands.option_values import read_positive
     from pluto_bt.commands.outputs import check_file
+    from pluto_bt.inputs.option_values import read_positive
 
     faults = Faults()
     seconds = read_positive(args.seconds, "--seconds", faults)

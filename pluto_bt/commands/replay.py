@@ -8,9 +8,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from pluto_bt.commands.files import find_file
 from pluto_bt.commands.options import Parser
 from pluto_bt.commands.replay_by_hand import KEYS, go_through
+from pluto_bt.files import find_file
 from pluto_bt.source import Faults, Place
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def _parser() -> Parser:
 
 def _check(args: argparse.Namespace) -> tuple[float | None, Path | None]:
     """The time of `--at` and the file of `--mission`. Raises: InputError for what does not fit."""
-    from pluto_bt.commands.option_values import read_time
+    from pluto_bt.inputs.option_values import read_time
 
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)
@@ -56,9 +56,9 @@ def _check(args: argparse.Namespace) -> tuple[float | None, Path | None]:
         faults.error(Place(f"--mission {args.mission}"), "bad-option", "--mission goes with --execute or --contracts",
                      expected="--execute or --contracts", found="--mission alone", mend="add one of them, or drop --mission")  # fmt: skip
     if args.web is not None:
-        from pluto_bt.commands.doors import check_web
+        from pluto_bt.commands.doors import read_web
 
-        check_web(args.web, faults)
+        read_web(args.web, faults)
     faults.raise_errors()
     return at_s, mission
 
@@ -85,7 +85,7 @@ def look(box: Box, at_s: float | None, by_hand: bool) -> int:
 def show_in_browser(box: Box, name: str, address: str) -> int:
     """Serve the console on the recording until Ctrl-C."""
     from pluto_bt.box_moments import Moments
-    from pluto_bt.commands.doors import web_address
+    from pluto_bt.doors import web_address
     from pluto_bt.gateway.listen import Address, open_listener
     from pluto_bt.gateway.web.recorded import RecordedSite
 
@@ -117,8 +117,8 @@ def execute(box: Box, mission: Path | None) -> int:
 
 def contracts(box: Box, mission: Path | None) -> int:
     """The contracts over the run."""
-    from pluto_bt.commands.plugins import load_plugins
     from pluto_bt.contract_report import check_box
+    from pluto_bt.inputs.plugins import load_plugins
     from pluto_bt.trees.loader.contracts import contracts_in
 
     load_plugins(box.run.plugins, Faults())  # for their enums; a contract that lacks one says so

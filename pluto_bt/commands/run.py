@@ -33,7 +33,7 @@ def main(argv: list[str]) -> int:
 def run_parser() -> Parser:
     """All options of a run."""
     from pluto_bt.commands.doors import add_door_options
-    from pluto_bt.commands.inputs import add_input_options
+    from pluto_bt.commands.input_options import add_input_options
 
     parser = Parser(prog="pluto run", description="Run a mission in a simulated world.")
     add_input_options(parser)
@@ -84,28 +84,28 @@ def _resume(args: argparse.Namespace) -> ResumeRequest | None:
 
 
 def _run(args: argparse.Namespace) -> RunResult:
-    from pluto_bt.commands.doors import check_doors
-    from pluto_bt.commands.files import refuse_shadowed_packages
-    from pluto_bt.commands.inputs import Request, read_inputs
-    from pluto_bt.commands.option_values import read_positive
+    from pluto_bt.commands.doors import read_doors
+    from pluto_bt.commands.input_options import request_of
     from pluto_bt.commands.outputs import check_outputs
+    from pluto_bt.files import refuse_shadowed_packages
+    from pluto_bt.inputs.option_values import read_positive
+    from pluto_bt.inputs.reading import read_inputs
 
     refuse_shadowed_packages()
     faults = Faults()
     check_outputs(args, faults)
-    doors = check_doors(args, faults)
+    doors = read_doors(args, faults)
     speed, max_time_s = read_positive(args.speed, "--speed", faults), read_positive(args.max_time, "--max-time", faults)
-    inputs = read_inputs(Request.of(args), faults=faults)
+    inputs = read_inputs(request_of(args), faults=faults)
     for warning in inputs.warnings:
         print(warning.as_text(), file=sys.stderr)
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
-    has_gateway = args.realtime or any((args.gateway, args.ssh, args.web))
+    has_gateway = args.realtime or doors.gateway is not None or doors.web is not None or doors.ssh is not None
     progress = _progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,
-        resume=_resume(args), gateway=args.gateway, gateway_access=doors.access, gateway_audit=args.gateway_audit, web=args.web,
-        groot=args.groot, ssh=doors.ssh, on_event=progress.event, on_progress=progress.show, on_compiling=lambda: _tell_of_compilation(has_gateway),
+        resume=_resume(args), doors=doors, on_event=progress.event, on_progress=progress.show, on_compiling=lambda: _tell_of_compilation(has_gateway),
     )  # fmt: skip
     progress.attach(runner.mission)
     with runner.interruptible():

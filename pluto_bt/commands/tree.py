@@ -22,7 +22,7 @@ def main(argv: list[str]) -> int:
     from pluto_bt.trees.dump import draw, dump
 
     if args.mission is not None and not _is_box(args.mission):
-        from pluto_bt.commands.missions import load_for_drawing
+        from pluto_bt.inputs.missions import load_for_drawing
 
         print(dump(load_for_drawing(args.mission, args.tree, args.plugin), args.format, statuses=False))
         return 0
@@ -81,7 +81,7 @@ def _of_run(args: argparse.Namespace) -> Drawn | None:
     if args.gateway is not None:
         return of_gateway(args.gateway)
     from pluto_bt.commands.boxes import read_box
-    from pluto_bt.commands.option_values import read_time
+    from pluto_bt.inputs.option_values import read_time
 
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)

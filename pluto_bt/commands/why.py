@@ -20,7 +20,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--gateway", metavar="HOST:PORT", default="127.0.0.1:7500")
     parser.add_argument("--json", action="store_true", help="one JSON object")
     args = parser.parse_args(argv)
-    from pluto_bt.commands.option_values import read_time
+    from pluto_bt.inputs.option_values import read_time
 
     faults = Faults()
     at_s = read_time(args.at, "--at", faults)

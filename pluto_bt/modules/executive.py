@@ -135,7 +135,7 @@ class Executive:
         if shown != self._shown_statuses or now_s >= self._next_words_s:
             self._shown_statuses = shown
             count = self._put_tree(ticked, now_s)
-            is_watched = self._system.options.takes_orders
+            is_watched = self._system.options.doors.take_orders
             self._next_words_s = now_s + max(WORDS_EVERY_S, WORDS_A_NODE_S * count) if is_watched else math.inf
 
     def _show_turns(self, now_s: float) -> None:

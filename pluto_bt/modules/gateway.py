@@ -18,23 +18,23 @@ class Gateway:
     def __init__(self, context: Context) -> None:
         """Raises: InputError if an address that was asked for cannot be had; the default one in use is only a warning."""
         options = context.system.options
-        self._say, self._options = context.say, options
+        self._say, self._options, self._doors = context.say, options, options.doors
         self._restarts, self._is_lost, self._trouble = 0, False, ""
         port = GatewayPort(context)
         self._console: Console | None = None
-        if options.web is not None:
-            self._console = Console(options.web, scenery(context.map or options.world, options.robot, port.name, mode="live"))
-        self._link = self._open(port, options.gateway or (Address() if options.has_gateway else None))
+        if self._doors.web is not None:
+            self._console = Console(self._doors.web, scenery(context.map or options.world, options.robot, port.name, mode="live"))
+        self._link = self._open(port, self._doors.gateway)
 
     def _open(self, port: RobotPort, address: Address | None) -> GatewayLink | None:
         """The link with its ports taken; None if there is nothing to listen on."""
-        options = self._options
-        audit = Audit(options.gateway_audit, lambda text: self._say("error", "no-audit", "gateway", text))
-        link = GatewayLink(port, address, options.gateway_access, options.robot.gateway, audit, self._console)
+        doors = self._doors
+        audit = Audit(doors.audit, lambda text: self._say("error", "no-audit", "gateway", text))
+        link = GatewayLink(port, address, doors.access, self._options.robot.gateway, audit, self._console)
         try:
             link.listen()
         except InputError as error:
-            if options.gateway is not None or address is None or link.address is not None:
+            if doors.is_gateway_asked or address is None or link.address is not None:
                 raise
             fault = error.faults[0]
             self._trouble = f"{fault.message}: {fault.found}"
@@ -66,7 +66,7 @@ class Gateway:
         if self.address is not None:
             self._say("info", "gateway", "gateway", f"listening on {self.address}")
         if self.console_address is not None:
-            access = self._options.gateway_access
+            access = self._doors.access
             scheme = "https" if access is not None and access.certificate else "http"
             self._say("info", "web-console", "gateway", f"the web console is at {scheme}://{self.console_address.reachable}/")
 

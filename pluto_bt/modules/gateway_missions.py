@@ -10,7 +10,7 @@ from xml.sax.saxutils import quoteattr
 import msgspec
 
 from pluto_bt.blackboard.messages import MissionState
-from pluto_bt.commands.files import SHIPPED, package_root
+from pluto_bt.files import SHIPPED, package_root
 from pluto_bt.gateway.port import NO_PORTS, RefusedError
 from pluto_bt.modules.context import Context
 from pluto_bt.runtime.latch import ESTOP, OPERATOR_STOP

@@ -19,7 +19,7 @@ class Groot:
 
     def __init__(self, context: Context) -> None:
         """Raises: InputError if the ports cannot be had."""
-        asked: Address | None = context.system.options.groot
+        asked: Address | None = context.system.options.doors.groot
         assert asked is not None, "made only if it was asked for"
         self._context = context
         self._desk = Desk(context.clock.now_ns, lambda: calendar_ns() // 1000)

@@ -14,7 +14,7 @@ class Ssh:
 
     def __init__(self, context: Context) -> None:
         """Raises: InputError if the address or a host key cannot be had."""
-        asked: SshRequest | None = context.system.options.ssh
+        asked: SshRequest | None = context.system.options.doors.ssh
         assert asked is not None, "made only if it was asked for"
         self._context = context
         self._link = SshLink(asked, host_key())

@@ -12,7 +12,7 @@ import pytest
 from pluto_bt.behaviours.conditions import Condition
 from pluto_bt.behaviours.destinations import Destinations
 from pluto_bt.behaviours.map_path import MapPath
-from pluto_bt.behaviours.nav2.missing import MISSING
+from pluto_bt.behaviours.missing import MISSING
 from pluto_bt.blackboard.messages import ActuatorState, BatteryState, FVectorState, LaserScan, read_only
 from pluto_bt.maps.world import Goal, Shape, World
 from pluto_bt.skills.sight import ScanView

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from pluto_bt.blackboard import messages as m
-from pluto_bt.commands.files import package_root
+from pluto_bt.files import package_root
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.port import RunState

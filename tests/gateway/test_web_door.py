@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from pluto_bt.blackboard import messages as m
-from pluto_bt.commands.doors import check_web
+from pluto_bt.commands.doors import read_web
 from pluto_bt.gateway.link import Console
 from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.wire import Scenery
@@ -221,7 +221,7 @@ def test_from_elsewhere_it_is_tls_and_a_token_says_who_it_is(tmp_path: Path) -> 
 
 def test_a_console_for_elsewhere_without_tls_and_tokens_is_refused() -> None:
     faults = Faults()
-    check_web("0.0.0.0:0", faults)
+    read_web("0.0.0.0:0", faults)
     (fault,) = faults.in_order()
     assert (fault.code, fault.file) == ("not-loopback", "--web")
     assert "--gateway-tls" in fault.expected and "ssh -L" in fault.mend

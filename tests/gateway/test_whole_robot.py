@@ -11,8 +11,8 @@ import pytest
 from lxml import etree
 
 from pluto_bt import gateway
-from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.gateway.local import LocalClient, LocalGateway
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.record.box import open_box
 from pluto_bt.runner import make_runner

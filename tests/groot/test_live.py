@@ -15,6 +15,7 @@ from py_trees.ports import BehaviourWithPorts
 
 from pluto_bt.behaviours.leaf import NO_PORTS
 from pluto_bt.cli import main
+from pluto_bt.doors import Doors
 from pluto_bt.gateway.listen import Address
 from pluto_bt.groot.protocol import Desk
 from pluto_bt.groot.server import Server
@@ -121,7 +122,7 @@ def test_a_monitor_changes_nothing_of_a_run(scenario: Play, play: Any) -> None:
 
 def test_the_module_can_be_stopped_and_started_again() -> None:
     clock, executive = VirtualClock(), SimpleNamespace(on_ticked=None)
-    system = SimpleNamespace(options=SimpleNamespace(groot=Address("127.0.0.1", 0)), executive=executive)
+    system = SimpleNamespace(options=SimpleNamespace(doors=Doors(groot=Address("127.0.0.1", 0))), executive=executive)
     module = Groot(cast(Any, SimpleNamespace(system=system, clock=clock, say=lambda *words: None)))
     for _ in range(2):
         module.start(0.0)

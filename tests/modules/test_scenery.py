@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from pluto_bt.commands.files import package_root
+from pluto_bt.files import package_root
 from pluto_bt.maps.load import load_world
 from pluto_bt.maps.world import OccupancyGrid, World
 from pluto_bt.modules.robot_file import SHIPPED, load_robot_file

@@ -12,10 +12,12 @@ import pytest
 
 from pluto_bt.blackboard.messages import Message
 from pluto_bt.cli import main
-from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.commands.record import record
+from pluto_bt.doors import Doors
 from pluto_bt.gateway.client import Client, GatewayError
+from pluto_bt.gateway.listen import Address
 from pluto_bt.gateway.why import causes_of, lines
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.playback import replay_file
 from pluto_bt.record.box import open_box
 from pluto_bt.runner import Runner, make_runner
@@ -56,7 +58,7 @@ class Live:
 @pytest.fixture
 def live(tmp_path: Path) -> Iterator[Live]:
     inputs = read_inputs(Request("patrol.xml", world="yard.xml", platform="pioneer", port=["goals=8,3;2,3.5", "rounds=9"]))
-    robot = Live(make_runner(inputs, realtime=True, gateway="127.0.0.1:0", record=tmp_path / "a.mcap"))
+    robot = Live(make_runner(inputs, realtime=True, doors=Doors(gateway=Address(port=0)), record=tmp_path / "a.mcap"))
     yield robot
     robot.end()
 

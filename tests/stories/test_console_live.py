@@ -14,7 +14,7 @@ from typing import IO, Any
 
 import pytest
 
-from pluto_bt.commands.files import package_root
+from pluto_bt.files import package_root
 from pluto_bt.scenario import Play
 from tests.gateway.browsers import Screen, chromium
 

@@ -12,7 +12,7 @@ from pluto_bt.bench.faults import play_pair
 from pluto_bt.bench.why_score import ASKED_AFTER_S
 from pluto_bt.blackboard.codes import LinkStatus, Setter
 from pluto_bt.blackboard.messages import Pose
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.record.box import open_box
 from pluto_bt.runner import Runner
 from pluto_bt.source import Faults

@@ -10,7 +10,9 @@ from typing import Any
 import pytest
 
 from pluto_bt.bench.resume import MISSION, Outcome, outcomes
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.doors import Doors
+from pluto_bt.gateway.listen import Address
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.playback import replay_file
 from pluto_bt.result import RunResult
 from pluto_bt.resume import ResumeRequest
@@ -100,7 +102,7 @@ def test_an_operator_lets_a_held_mission_go_on(folder: Path) -> None:
             let_go.append(system.simulator.distance_m)
             system.operator_resume()
 
-    result, _ = run(folder, "hold", on_progress=progress, said=said, gateway="127.0.0.1:0")
+    result, _ = run(folder, "hold", on_progress=progress, said=said, doors=Doors(gateway=Address(port=0)))
     assert let_go == [0.0] and result.result == "SUCCESS" and said == ["one", "two"]
 
 
@@ -175,7 +177,7 @@ def test_let_go_with_a_damaged_journal_no_side_effect_is_repeated_and_a_copy_sta
     lines = (folder / "journal").read_bytes().splitlines()
     damage(folder, next(i for i, line in enumerate(lines, 1) if b'["there","SUCCESS"]' in line))
     found = (folder / "journal").read_bytes()
-    result, _ = run(folder, "hold", on_progress=lambda system: system.operator_resume(), said=said, gateway="127.0.0.1:0")
+    result, _ = run(folder, "hold", on_progress=lambda system: system.operator_resume(), said=said, doors=Doors(gateway=Address(port=0)))
     assert result.result == "SUCCESS" and said == ["one", "two"]
     assert (folder / "journal.damaged").read_bytes() == found
     past = read_journal(folder / "journal")

@@ -10,7 +10,7 @@ import pytest
 from py_trees.common import Status
 
 from pluto_bt.behaviours.leaf import NO_PORTS, Leaf
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
 from tests.safety_cases import CAUSES, DRIVING, ROBOT, SPEED_MPS, T_S, Cause, braking_s, fault
 

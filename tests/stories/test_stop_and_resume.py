@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 from pluto_bt.blackboard.messages import ActuatorState, Event, MissionState
-from pluto_bt.commands.inputs import Request, read_inputs
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.modules.gateway_port import GatewayPort
 from pluto_bt.runner import make_runner
 from tests.trees.clinging import Clings

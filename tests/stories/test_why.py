@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 
 from pluto_bt.cli import main
-from pluto_bt.commands.inputs import Request, read_inputs
 from pluto_bt.gateway.why import lines
+from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.record.box import Box, open_box
 from pluto_bt.runner import make_runner
 from pluto_bt.runtime.latch import ESTOP

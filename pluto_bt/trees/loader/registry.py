@@ -11,7 +11,7 @@ from typing import Any, Final
 from py_trees.ports import get_ports_registry
 
 import pluto_bt.behaviours.catalogue  # noqa: F401  # the library's own leaves enter py_trees' registry by being imported
-from pluto_bt.behaviours.nav2.missing import CONDITIONS, MISSING
+from pluto_bt.behaviours.missing import MISSING, MISSING_CONDITIONS
 from pluto_bt.trees.controls import CONTROLS
 from pluto_bt.trees.decorators import DECORATORS
 from pluto_bt.trees.engine.node import DecoratorNode, Node
@@ -108,10 +108,10 @@ def _leaf_type(tag: str, cls: Any) -> NodeType:
 
 
 def _missing_type(name: str, why: str, inputs: str, outputs: str) -> NodeType:
-    """A node of Nav2 that is known by name, so that its ports are not told as faults beside it; without a class."""
+    """A node that is known by name, so that its ports are not told as faults beside it; without a class."""
     sides: tuple[tuple[Direction, str], ...] = (("in", inputs), ("out", outputs))
     ports = {port: PortModel(port, side, required=False) for side, names in sides for port in names.split()}
-    kind = "Condition" if name in CONDITIONS else "Action"
+    kind = "Condition" if name in MISSING_CONDITIONS else "Action"
     return NodeType(name, kind, ports, description=f"Not there yet: {why}.", missing=why)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from pluto_bt.commands.ways_in_world import Ways
+from pluto_bt.inputs.ways_in_world import Ways
 from pluto_bt.maps.clearance import Blocked, path_is_clear
 from pluto_bt.maps.geometry import Pose, transform_points
 from pluto_bt.maps.platform import Limits

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 
-from pluto_bt.commands.files import find_file
-from pluto_bt.commands.missions import examine_file
-from pluto_bt.commands.option_values import Pose, read_ports, read_seed, read_start
-from pluto_bt.commands.plugins import load_plugins
-from pluto_bt.commands.world_checks import check_together, in_file
+from pluto_bt.files import find_file
+from pluto_bt.inputs.missions import examine_file
+from pluto_bt.inputs.option_values import Pose, read_ports, read_seed, read_start
+from pluto_bt.inputs.plugins import load_plugins
+from pluto_bt.inputs.world_checks import check_together, in_file
 from pluto_bt.maps.load import read_world
 from pluto_bt.maps.world import World
 from pluto_bt.modules.live_parameters import value_of
@@ -40,11 +39,6 @@ class Request:
     params: str | None = None
     plugin: Sequence[str] = ()
 
-    @classmethod
-    def of(cls, args: argparse.Namespace) -> Request:
-        """The request that a parsed command line makes."""
-        return cls(**{field.name: getattr(args, field.name) for field in fields(cls)})
-
 
 @dataclass
 class Inputs:
@@ -63,21 +57,6 @@ class Inputs:
     settings: tuple[str, ...] = ()
     plugins: tuple[str, ...] = ()
     params: Path | None = None
-
-
-def add_input_options(parser: argparse.ArgumentParser) -> None:
-    """The options that say what is run where."""
-    parser.add_argument("mission", metavar="MISSION.xml", help="a mission file, or the name of a shipped one")
-    parser.add_argument("--world", metavar="W", help=f"world: our XML, a ROS map.yaml or an ARNL .map (default {DEFAULT_WORLD})")
-    parser.add_argument("--map", metavar="M", help="a-priori map for localisation and planning (default: the world's own)")
-    parser.add_argument("--start", metavar="X,Y,DEG", help="start pose (default: the world's)")
-    parser.add_argument("--platform", metavar="P", help=f"atrv2, car, jbot, pioneer or a .toml file (default: the world's, else {DEFAULT_PLATFORM})")
-    parser.add_argument("--tree", metavar="ID", help="the tree to run, if not the main one")
-    parser.add_argument("--port", metavar="NAME=VALUE", action="append", default=[], help="an input of the main tree; may be repeated")
-    parser.add_argument("--seed", metavar="N", help="seed of all randomness (default: the world's, else 0)")
-    parser.add_argument("--set", metavar="PARAM=VALUE", action="append", default=[], help="a parameter of the platform file; may be repeated")
-    parser.add_argument("--params", metavar="FILE.toml", help='parameters laid over the platform file; <params op="save"/> writes it')
-    parser.add_argument("--plugin", metavar="MODULE", action="append", default=[], help="a Python module whose nodes may be used; may be repeated")
 
 
 def read_inputs(request: Request, beside: Path | None = None, nodes: Iterable[type] = (), faults: Faults | None = None) -> Inputs:
@@ -167,4 +146,4 @@ def _platform_name(asked: str | None, world: World | None, beside: Path | None) 
     return next((str(folder / name) for folder in folders if name.endswith(".toml") and (folder / name).is_file()), name)
 
 
-__all__ = ["Inputs", "Request", "add_input_options", "check_world", "read_inputs", "read_robot"]
+__all__ = ["Inputs", "Request", "check_world", "read_inputs", "read_robot"]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from pluto_bt.commands.legs_in_world import LegCheck, LegTold
-from pluto_bt.commands.option_values import Pose
+from pluto_bt.inputs.legs_in_world import LegCheck, LegTold
+from pluto_bt.inputs.option_values import Pose
 from pluto_bt.maps.world import World
 from pluto_bt.modules.robot_file import RobotFile
 from pluto_bt.source import Faults

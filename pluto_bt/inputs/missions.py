@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pluto_bt.commands.files import find_file
-from pluto_bt.commands.option_values import read_ports
-from pluto_bt.commands.plugins import load_plugins
+from pluto_bt.files import find_file
+from pluto_bt.inputs.option_values import read_ports
+from pluto_bt.inputs.plugins import load_plugins
 from pluto_bt.source import Faults
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ SHIPPED = {"mission": ("missions", (".xml",)), "world": ("sim/worlds", (".xml", 
 
 def package_root() -> Path:
     """The folder that holds pluto_bt, sim, drivers, estimation and missions side by side."""
-    return Path(__file__).resolve().parents[2]
+    return Path(__file__).resolve().parents[1]
 
 
 def find_file(kind: str, name: str, faults: Faults, beside: Path | None = None) -> Path | None:

@@ -1,4 +1,4 @@
-"""Nodes of Nav2 that have no counterpart on our robots: known by name, so that a tree with one is refused with the reason and the place.
+"""Nodes that our robots cannot run yet: known by name, so that a tree with one is refused with the reason and the place.
 
 There is no class behind them: nothing that could be run.
 """
@@ -7,8 +7,13 @@ from __future__ import annotations
 
 from typing import Final
 
-# name → (why, inputs, outputs)
-MISSING: Final[dict[str, tuple[str, str, str]]] = {
+# name → (what our robots have not, inputs, outputs)
+OWN_MISSING: Final[dict[str, tuple[str, str, str]]] = {
+    "FindWall": ("module pose", "side distance_m timeout_s", "pose reason"),
+    "Record": ("recording that a mission begins; `pluto run --record FILE.mcap` records", "file", "reason"),
+    "SaveMap": ("module slam", "file", "reason"),
+}
+NAV2_MISSING: Final[dict[str, tuple[str, str, str]]] = {
     "AssistedTeleop": ("teleoperation", "is_recovery time_allowance server_name server_timeout", "error_code_id error_msg"),
     "CancelAssistedTeleop": ("teleoperation", "server_name server_timeout", ""),
     "CancelWait": ("cancelling a Wait from beside it", "server_name server_timeout", ""),
@@ -40,4 +45,5 @@ MISSING: Final[dict[str, tuple[str, str, str]]] = {
     "ToggleCollisionMonitor": ("a collision monitor that can be switched off; the stop filter never is", "enable service_name server_timeout", ""),
     "IsBatteryCharging": ("a charger that tells", "battery_topic", ""),
 }
-CONDITIONS: Final = ("IsBatteryCharging",)
+MISSING: Final = NAV2_MISSING | OWN_MISSING
+MISSING_CONDITIONS: Final = ("IsBatteryCharging",)
