@@ -13,7 +13,7 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.skills.approach import PERHAPS, SURELY
-from pluto_bt.skills.movers import Mask, Movers, came_closer
+from pluto_bt.skills.movers import MOVED_BEAMS, Beams, Mask, Movers, came_closer, gone_away
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.scans_before import ScansBefore
 from pluto_bt.skills.stop_path import IN_VIEW, SPREAD_M, STRANGER, WALKER_COLUMNS
@@ -48,15 +48,12 @@ class WalkerWatch:
         before = self._before.take(scan, laser)
         if before is None:
             return
-        ranges = scan.ranges_m
-        near: Mask = (ranges > 0.0) & (ranges < REACH_M) & (believed != 0.0)
-        beams = near.nonzero()[0]
-        range_m, bearing_rad = ranges[beams], laser[2] + scan.angle_min_rad + scan.angle_step_rad * beams
-        points = np.zeros((len(beams), 2))
-        points[:, 0], points[:, 1] = laser[0] + range_m * np.cos(bearing_rad), laser[1] + range_m * np.sin(bearing_rad)
-        moved = came_closer(ranges, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
+        near: Mask = (scan.ranges_m > 0.0) & (scan.ranges_m < REACH_M) & (believed != 0.0)
+        points, beams = _ends(scan, laser, near)
+        moved = came_closer(scan.ranges_m, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
         self._movers.velocities(points, beams, moved, scan.stamp_s)
-        self._meet(_apart([Walker(x, y, vx, vy, 0.0, scan.stamp_s, walked_s) for x, y, vx, vy, walked_s in self._movers.walkers.tolist()]))
+        seen = [Walker(x, y, vx, vy, 0.0, scan.stamp_s, walked_s) for x, y, vx, vy, walked_s in self._movers.walkers.tolist()]
+        self._meet(_apart([*seen, *_those_who_go(scan, laser, points, beams, *before)]))
         self._look_for_the_others(scan, laser, believed, min(scan.stamp_s - before[0].stamp_s, SCAN_S))
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
@@ -114,6 +111,25 @@ class WalkerWatch:
                 one.looked_for_s += looked_s
                 if not one.is_in_view(scan.stamp_s) and one.is_watched(scan, laser):
                     one.stays(scan.stamp_s)
+
+
+def _ends(scan: LaserScan, laser: Planar, near: Mask) -> tuple[Array, Beams]:
+    """(n, 2) x m, y m where the `near` beams end, and (n,) which ones they are."""
+    beams = near.nonzero()[0]
+    range_m, bearing_rad = scan.ranges_m[beams], laser[2] + scan.angle_min_rad + scan.angle_step_rad * beams
+    points = np.zeros((len(beams), 2))
+    points[:, 0], points[:, 1] = laser[0] + range_m * np.cos(bearing_rad), laser[1] + range_m * np.sin(bearing_rad)
+    return points, beams
+
+
+def _those_who_go(scan: LaserScan, laser: Planar, points: Array, beams: Beams, before: LaserScan, last: Planar) -> list[Walker]:
+    """Who walks away from the laser, or along behind what he hid from it."""
+    near: Mask = (before.ranges_m > 0.0) & (before.ranges_m < REACH_M)
+    left = came_closer(before.ranges_m, near, scan.ranges_m, last, laser, scan.angle_min_rad, scan.angle_step_rad, int(np.count_nonzero(near)))
+    if np.count_nonzero(left) < MOVED_BEAMS:
+        return []
+    gone = gone_away(points, beams, *_ends(before, last, near), left, scan.stamp_s - before.stamp_s)
+    return [Walker(x, y, vx, vy, 0.0, scan.stamp_s, scan.stamp_s) for x, y, vx, vy in gone.tolist()]
 
 
 def _apart(seen: list[Walker]) -> list[Walker]:

@@ -56,6 +56,17 @@ def test_a_walker_is_found_with_his_place_and_how_far_he_gets(velocity: tuple[fl
     assert rows[0, GROWTH_MPS] - drift_mps > 0.5 * pace_mps, "and turn on his heel"
 
 
+@pytest.mark.parametrize(("bearing_deg", "speed_mps"), [(0.0, 0.5), (30.0, 0.8), (-50.0, 1.2)])
+def test_who_walks_away_is_found_too_for_he_may_turn_on_his_heel(bearing_deg: float, speed_mps: float) -> None:
+    c, s = math.cos(math.radians(bearing_deg)), math.sin(math.radians(bearing_deg))
+    walk = [((1.0 + speed_mps * SCAN_S * k) * c, (1.0 + speed_mps * SCAN_S * k) * s) for k in range(8)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 8, Shape("tree", "circle", np.array([[3.0, -2.8]]), 0.2))
+    rows = watch.rows(now_s)
+    assert len(rows) == 1 and rows[0, IN_VIEW] == 1.0 and watch.is_anybody_about(now_s)
+    assert rows[0, :2] == pytest.approx(walk[-1], abs=0.3)
+    assert rows[0, GROWTH_MPS] - math.hypot(rows[0, DRIFT_X], rows[0, DRIFT_Y]) > 0.9 * speed_mps, "he may come back as fast as he went"
+
+
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_who_comes_along_beside_the_end_of_a_wall_is_seen_though_he_hangs_together_with_it(side: float) -> None:
     wall = Shape("wall", "wall", np.array([(2.2, -1.0 * side), (2.2, -0.2 * side)]))
