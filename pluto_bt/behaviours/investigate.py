@@ -11,6 +11,7 @@ from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot, pose_doubt
+from pluto_bt.behaviours.standstill import Standstill
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import Pair
@@ -92,14 +93,14 @@ class CircleObject(MotionLeaf):
         if not around.look(robot, self.now_s()) or around.object is None:
             return self.fail("no-object", "there is no object to circle: FindObject comes first")
         self._round, self._side = Round(), 1.0
-        self._sent_s, self._free_s = -math.inf, self.now_s()
+        self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
         self._has_turned_back = False
         self._pointed_rad = math.inf
         return None
 
     def resume(self, robot: Robot) -> None:
         """The next step posts anyway."""
-        self._sent_s, self._free_s = -math.inf, self.now_s()
+        self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
 
     def follow(self, robot: Robot) -> Status:
         """One step along the circle."""
@@ -115,12 +116,10 @@ class CircleObject(MotionLeaf):
         turns = self._round.go(around.robot, seen.thing)
         if turns >= float(self.get_input("turns")):
             return self.succeed(f"{turns:.2f} turns")
-        if status is None or max(abs(status.data[0]), 0.5 * abs(status.data[1])) > 0.03:
-            self._free_s = now_s
-        if now_s - self._free_s > BLOCKED_S:
+        if self._standstill.step(robot, now_s, is_held=False) > BLOCKED_S:
             if self._has_turned_back:
                 return self.fail("stuck", "the circle is blocked on both sides")
-            self._side, self._has_turned_back, self._free_s = -self._side, True, now_s
+            self._side, self._has_turned_back, self._standstill = -self._side, True, Standstill(now_s)
         self._drive(robot, around, seen.thing, now_s)
         return self.wait(f"{turns:.2f} turns around an object of {2.0 * seen.thing.radius_m:.1f} m")
 

@@ -18,6 +18,7 @@ from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
 from pluto_bt.blackboard.messages import FVectorState, Pair
 from pluto_bt.skills import ray_following as ray
+from pluto_bt.skills.outline import outline_of
 from pluto_bt.skills.ray_following import RayFollowing
 from pluto_bt.skills.rays import is_open
 from pluto_bt.skills.ways import Way
@@ -30,7 +31,8 @@ REFRESH_S: Final = 2.0
 AGAIN_S: Final = 1.0  # while somebody is in the way, a path is looked for so often
 PATIENCE_S: Final = 5.0  # then the robot goes nearer, and sees them better
 PEOPLE: Final = "every way is blocked, and somebody is about who will walk on: waiting"
-SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on
+SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on …
+SHUT_AHEAD_M: Final = 0.3  # … so far before its front
 GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
 
 
@@ -83,6 +85,8 @@ class FindPath(RobotLeaf):
         around.way = around.find(goal)
         if around.way is None and goal is not None and self._awaits_somebody(around, goal, now_s):
             return self.wait(PEOPLE)
+        if around.way is None:
+            around.way = around.find_once_more(goal)
         if around.way is not None and not around.sees_walkers(now_s) and not around.headway.decide(around.robot[:2]):
             if goal is not None:
                 return self.fail("stuck", "one path after the other ends here")
@@ -134,7 +138,7 @@ class FollowRay(MotionLeaf):
         if not around.look(robot, now_s) or around.way is None:
             return self.fail("no-path", "there is no path to follow: FindPath comes first")
         self._goal = goal_of(self)
-        self._following = RayFollowing(around.map, around.ways.least_m, around.openings)
+        self._following = RayFollowing(around.map, around.ways.least_m, around.ways.room_m, around.openings)
         self._following.begin(around.way, self._find, now_s, around.robot)
         self._point: Pair | None = None
         self._heading_rad: float | None = None
@@ -166,7 +170,7 @@ class FollowRay(MotionLeaf):
         speed_mps = status.data[0] if status is not None else 0.0
         advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)
         if advice.kind == ray.GO and status is not None and status.element[1] == GotoStatus.STUCK:
-            advice = ray.Advice(ray.BLOCKED, self._ahead(around, 0.9), text=status.text)
+            advice = ray.Advice(ray.BLOCKED, self._ahead(robot, around), text=status.text)
         return self._carry_out(robot, around, advice, status)
 
     def _carry_out(self, robot: Robot, around: Surroundings, advice: ray.Advice, status: FVectorState | None) -> Status:
@@ -203,7 +207,7 @@ class FollowRay(MotionLeaf):
 
     def _blocked(self, robot: Robot, around: Surroundings, advice: ray.Advice) -> Status:
         """Remember the place, and come away from it before anything is decided."""
-        around.map.shut(*self._ahead(around, 0.9), SHUT_M, self.now_s())
+        around.map.shut(*self._ahead(robot, around), SHUT_M, self.now_s())
         around.blocked += 1
         if around.blocked >= MOST_BLOCKED:
             return self.fail("stuck", advice.text)
@@ -218,8 +222,10 @@ class FollowRay(MotionLeaf):
             self.post(robot, CommandType.VELOCITY, velocity=(speed_mps, 0.0))
         return self.wait("coming away from where it was blocked")
 
-    def _ahead(self, around: Surroundings, distance_m: float) -> Pair:
+    def _ahead(self, robot: Robot, around: Surroundings) -> Pair:
+        """What is in the way of a robot that cannot go on."""
         x, y, theta = around.robot
+        distance_m = outline_of(robot.platform.body.outline_m).front_m + SHUT_AHEAD_M
         return x + distance_m * math.cos(theta), y + distance_m * math.sin(theta)
 
     def _decide(self, side: str, text: str, near: bool = False) -> Status:

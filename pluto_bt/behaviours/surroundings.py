@@ -58,6 +58,7 @@ class Surroundings:
             self._first_variance_m2, self._doubt_m = math.inf, 0.0
         self.rectangle = rectangle
         self.blocked = 0
+        self._has_reopened = False
         self.headway = Headway()
         self.way: Way | None = None
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
@@ -191,6 +192,15 @@ class Surroundings:
         if way is None and rectangle is not None and rectangle.doubt_m > 0.0:
             way = self._find(goal, rectangle._replace(doubt_m=0.0))
         return way
+
+    def find_once_more(self, goal: Pair | None) -> Way | None:
+        """The same where there was none, and where the robot could not go on is open again: from elsewhere, or another time, it may come through.
+        New ground is worth one such try."""
+        if (goal is None and self._has_reopened) or not self.map.reopen():
+            return None
+        self._has_reopened = True
+        self.map.refresh(self._refreshed_s)
+        return self.find(goal)
 
     def _find(self, goal: Pair | None, rectangle: Rectangle | None) -> Way | None:
         if goal is None:

@@ -11,15 +11,17 @@ from py_trees.common import Status
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.standstill import Standstill
 from pluto_bt.behaviours.way_driven import WayDriven
 from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.skills.limits import clamp
 
 REFRESH_S: Final = 1.0
+STUCK_S: Final = 8.0  # who has a way to drive and comes nowhere for so long is stuck; a drive that only has a duration ends by that
 
 
 class RefreshedLeaf(MotionLeaf):
-    """Posts the same command every second until `duration_s` is over or `distance_m` is driven."""
+    """Posts the same command every second until `duration_s` is over or `distance_m` is driven; fails with `stuck` where the way comes to no end."""
 
     @abstractmethod
     def send(self, robot: Robot) -> None:
@@ -32,7 +34,7 @@ class RefreshedLeaf(MotionLeaf):
     def begin(self, robot: Robot) -> Status | None:
         """First post. A duration of 0 is over before anything moves."""
         self._duration_s, self._distance_m = self.ends()
-        self._way = WayDriven(robot)
+        self._way, self._standstill = WayDriven(robot), Standstill(self.now_s())
         self._sent_s = self.elapsed_s
         if self._duration_s <= 0.0 or self._distance_m <= 0.0:
             return self.succeed("nothing to drive")
@@ -42,16 +44,21 @@ class RefreshedLeaf(MotionLeaf):
     def resume(self, robot: Robot) -> None:
         """Drive on."""
         self._was_accepted, self._sent_s = True, self.elapsed_s
+        self._standstill = Standstill(self.now_s())
         self.send(robot)
 
     def follow(self, robot: Robot) -> Status:
         """Over, or refresh."""
-        trouble = self.chain_trouble(robot, self.chain_status(robot))
+        status = self.chain_status(robot)
+        trouble = self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble
         way_m = abs(self._way.step(robot))
         if way_m >= self._distance_m or self.elapsed_s >= self._duration_s - 1e-6:
             return self.succeed(f"{way_m:.2f} m driven")
+        stood_s = self._standstill.step(robot, self.now_s(), is_held=status is None or bool(status.reason))
+        if stood_s > STUCK_S and self._distance_m < math.inf:
+            return self.fail("stuck", f"came nowhere for {STUCK_S:g} s, {self._distance_m - way_m:.2f} m to go")
         if self.elapsed_s - self._sent_s >= REFRESH_S - 1e-6:
             self._sent_s = self.elapsed_s
             self.send(robot)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 import msgspec
 
 from pluto_bt.blackboard.messages import ActuatorState
+from pluto_bt.blackboard.plain_command import plain
 
 WRONG_STATE = "wrong-state"
 
@@ -36,7 +37,11 @@ class Inbox:
         self._lock = threading.Lock()
 
     def post(self, source: str, command: ActuatorState) -> str:
-        """Leave a command. Returns "" or the code of the refusal (`wrong-state`: `source` does not own this inbox now)."""
+        """Leave a command. Returns "" or the code of the refusal (`wrong-state`: `source` does not own this inbox now).
+
+        Raises: TypeError if it is no command at all.
+        """
+        command = plain(command)
         with self._lock:  # asked inside: a command that was let in before the latch closed must not come after the stop that follows it
             if not self.is_owner(source):
                 return WRONG_STATE

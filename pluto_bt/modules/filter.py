@@ -36,7 +36,7 @@ class Filter:
         self._scan_topic, self._sonar_topic = newest(context, "sick/scan"), newest(context, "ATRV2/Sonar")
         self._check, self._was_lost = newest(context, "Localization/Check"), False
         self._scan: LaserScan | None = None
-        self._laser: tuple[Planar | None, float] = (None, 0.0)
+        self._laser: tuple[Planar | None, float, str] = (None, 0.0, "")
         self._sonar: SonarState | None = None
         self._sonar_at: Planar | None = None
         self._wanted: Twist = STILL
@@ -117,7 +117,7 @@ class Filter:
             return
         at = pose_at(self._board, DEAD_RECKONING, scan.stamp_s)
         view = self._mount.view(scan, None if at is None else _planar(at))
-        self._scan, self._laser = scan, (view.laser, view.tilt_rad)
+        self._scan, self._laser = scan, (view.laser, view.tilt_rad, view.lacks)
 
     def _find_sonar(self, dead: Pose | None) -> None:
         sonar: SonarState | None = self._sonar_topic()

@@ -9,8 +9,8 @@ from estimation.se2 import Pose2, between
 from estimation.se3 import Pose6, compose
 from estimation.track import Moment, Tilt
 from pluto_bt.blackboard.messages import LaserPose
-from pluto_bt.blackboard.poses import actuator_at
 from pluto_bt.modules.context import Context
+from pluto_bt.modules.wrist_angles import wrist_at
 
 
 class Arm(NamedTuple):
@@ -31,8 +31,8 @@ class LaserPlace:
         self._board = context.board
 
     def arm(self, stamp_s: float) -> Arm | None:
-        """The laser at `stamp_s`; None if the wrist's history does not reach there."""
-        angles = actuator_at(self._board, "wrist/state", stamp_s) if self._has_wrist else (0.0, 0.0)
+        """The laser at `stamp_s`; None if nobody knows where the wrist held it."""
+        angles = wrist_at(self._board, stamp_s) if self._has_wrist else (0.0, 0.0)
         return None if angles is None else Arm((*self._xyz, angles[0], angles[1], 0.0), *angles)
 
     def planar(self, robot: Moment) -> Pose2 | None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from pluto_bt.blackboard.codes import Avoidance, GotoStatus, LinkStatus, MotionStatus
+import msgspec
+
+from pluto_bt.blackboard.codes import Avoidance, CommandType, GotoStatus, LinkStatus, MotionStatus
 from pluto_bt.blackboard.messages import ActuatorState, FVectorState, JobState, Pose, RectangleState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import RELEASE, Link, below, newest
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from pluto_bt.modules.robot_file import RobotFile
 
 POSE_STALE_S = 1.0  # a job may be ordered with an older pose than one may steer by
+REFRESH_S = 1.0  # a job that stands (it unfolds the arm, waits for people) renews its zero velocity so often, so that drive does not time out
 
 
 class Motion:
@@ -34,7 +37,8 @@ class Motion:
         self._skill = Skill(context.parameters(MotionParameters), Avoidance(has), devices.laser is not None)
         self._pose, self._job_state = newest(context, "Localization/Pose"), newest(context, "motion/job")
         self._avoid_status, self._avoid_command = below(context, "avoidance")
-        self._sent: ActuatorState | None = None
+        self._sent: ActuatorState | None = None  # what avoidance has not accepted yet
+        self._down, self._down_s = ActuatorState(0.0), 0.0  # what was passed down last, and when
         self._rectangle = context.board.publisher("motion/rectangle", "motion")
         self._shown: Rectangle | None = None
 
@@ -66,7 +70,7 @@ class Motion:
                 self._link.release()
                 self._link.tell(now_s, self._rest(now_s), letter.command)
                 return
-            self._pass_down(self._skill.accept(letter.command, now_s, self._where(now_s)))
+            self._pass_down(self._skill.accept(letter.command, now_s, self._where(now_s)), now_s)
             self._show(now_s)
             self._order()
         self._work_for_the_job(now_s)
@@ -78,18 +82,20 @@ class Motion:
 
     def stop(self) -> None:
         """The thread stops and shows -10. Avoidance goes on: stopping motion does not stop it; a job ends."""
-        now_s = self._clock.now_s()
+        now_s, last = self._clock.now_s(), self._rest(self._clock.now_s())
         if self._skill.job is not None:
             self._avoid.stop("motion", now_s)
             self._jobs.put(None)
             self._skill.reset()
+            last = msgspec.structs.replace(last, data=STILL, element=(last.element[0], int(GotoStatus.NONE), *last.element[2:]))
         self._link.is_running = False
-        self._link.tell(now_s, self._rest(now_s))
+        self._link.tell(now_s, last)
 
-    def _pass_down(self, command: ActuatorState | None) -> None:
+    def _pass_down(self, command: ActuatorState | None, now_s: float) -> None:
         if command is not None:
             self._avoid.post("motion", command)
-            self._sent = command
+            self._sent = self._down = command
+            self._down_s = now_s
 
     def _show(self, now_s: float) -> None:
         """The rectangle, if it is another one."""
@@ -109,12 +115,18 @@ class Motion:
         letter = None if self._job_inbox is None else self._job_inbox.take()
         job = self._skill.job
         if letter is not None and job is not None and letter.source == job.source:
-            self._pass_down(letter.command)
+            self._pass_down(letter.command, now_s)
+        elif job is not None and self._stands_by_order and now_s - self._down_s >= REFRESH_S:
+            self._pass_down(self._down, now_s)  # the same command: its sender still knows it by its stamp
         state: JobState | None = self._job_state()
         if state is not None and job is not None:
             self._skill.hear(state)
             if self._skill.verdict.reason:
-                self._pass_down(ActuatorState(now_s))  # it failed: the robot stands, whatever its tree did last
+                self._pass_down(ActuatorState(now_s), now_s)  # it failed: the robot stands, whatever its tree did last
+
+    @property
+    def _stands_by_order(self) -> bool:
+        return self._down.velocity == STILL and self._down.flags % 10 == CommandType.VELOCITY
 
     def _where(self, now_s: float) -> Planar | None:
         """The pose of interface 3, None if it is missing or too old."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from pluto_bt.blackboard import Blackboard, Snapshot
-from pluto_bt.blackboard.messages import ActuatorState, LaserScan
-from pluto_bt.blackboard.poses import actuator_at
+from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Platform
+from pluto_bt.modules.wrist_angles import wrist_at
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.sight import ScanView
 
@@ -24,18 +24,11 @@ class LaserMount:
     def view(self, scan: LaserScan, robot: Planar | None) -> ScanView:
         """The scan as taken by a laser on a robot that stood at `robot` (None: nobody knows)."""
         if robot is None:
-            return ScanView(scan, None)
-        pan_rad, tilt_rad = self._wrist_at(scan.stamp_s)
+            return ScanView(scan, None, lacks="odometry")
+        angles = wrist_at(self._board, scan.stamp_s) if self._has_wrist else (0.0, 0.0)
+        if angles is None:
+            return ScanView(scan, None, lacks="wrist")
+        pan_rad, tilt_rad = angles
         c, s = math.cos(robot[2]), math.sin(robot[2])
         x_m, y_m = robot[0] + c * self._x_m - s * self._y_m, robot[1] + s * self._x_m + c * self._y_m
         return ScanView(scan, (x_m, y_m, robot[2] + pan_rad), tilt_rad)
-
-    def _wrist_at(self, stamp_s: float) -> tuple[float, float]:
-        """Pan and tilt at a time, interpolated; the newest known where the history does not reach; 0 without a wrist."""
-        if not self._has_wrist:
-            return 0.0, 0.0
-        then = actuator_at(self._board, "wrist/state", stamp_s)
-        if then is not None:
-            return then
-        newest = self._board.newest("wrist/state")
-        return newest.value.position if newest is not None and isinstance(newest.value, ActuatorState) else (0.0, 0.0)

@@ -65,7 +65,7 @@ def drive_limits(platform: Platform, parameters: DriveParameters) -> Limits:
 
 
 def is_finite(command: ActuatorState) -> bool:
-    """True if every number of the command is one that can be driven."""
+    """True if every number of the command is one that can be driven; where one was missing the inbox has put NaN."""
     numbers = (*command.position, *command.velocity, *command.acceleration, *command.force)
     return all(map(math.isfinite, numbers))
 

@@ -23,8 +23,8 @@ from pluto_bt.skills.walkers import ANYWHERE, WalkerWatch
 class FilterSenses(NamedTuple):
     """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3, each with its stamp.
 
-    `laser` and `tilt_rad`: where `scan` was taken from, in the frame of dead reckoning; `sonar_at`: where the robot was when `sonar` listened;
-    `executive_age_s`: seconds since the executive's last step.
+    `laser`, `tilt_rad` and `lacks` are those of `ScanView`: where `scan` was taken from, in the frame of dead reckoning;
+    `sonar_at`: where the robot was when `sonar` listened; `executive_age_s`: seconds since the executive's last step.
     """
 
     raw: ActuatorState | None
@@ -33,6 +33,7 @@ class FilterSenses(NamedTuple):
     scan: LaserScan | None = None
     laser: Planar | None = None
     tilt_rad: float = 0.0
+    lacks: str = ""
     sonar: SonarState | None = None
     sonar_at: Planar | None = None
     bumper: BumperState | None = None
@@ -101,7 +102,7 @@ class _Eye:
         scan, last, self._scan = senses.scan, self._scan, senses.scan
         if scan is None or (last is not None and scan.stamp_s == last.stamp_s):
             return
-        if not self.watch.look(scan, senses.laser) or senses.laser is None:
+        if not self.watch.look(scan, senses.laser, senses.lacks) or senses.laser is None:
             return
         if space.add_scan(scan, senses.laser, self._z_m, senses.tilt_rad, walkers.bodies(scan.stamp_s)):
             walkers.take_scan(scan, senses.laser, space.believed)

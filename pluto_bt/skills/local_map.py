@@ -55,6 +55,7 @@ class LocalMap:
         self._touched: Counts = np.zeros((CELLS, CELLS), dtype=np.int32)
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
+        self._shut: list[tuple[float, float, float, float]] = []  # x m, y m, radius m, when
         self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
         self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
 
@@ -97,7 +98,7 @@ class LocalMap:
 
     def standing(self) -> Array:
         """The middles (n, 2) in metres of all cells where something stands, as of the last `refresh`."""
-        i, j = np.nonzero(self.clearance < 0.5)
+        i, j = np.divmod(np.flatnonzero(self.clearance < 0.5), CELLS)  # ten times as fast as `nonzero` of a grid
         return np.column_stack((i + self.i0 + 0.5, j + self.j0 + 0.5)) * self.cell_m
 
     # ------------------------------------------------------------------ seeing
@@ -146,7 +147,18 @@ class LocalMap:
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
         self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
+        self._shut.append((x_m, y_m, radius_m, now_s))
         self._changed(*self.place(x_m, y_m), radius_m)
+
+    def reopen(self) -> bool:
+        """Forget what was shut, but for what has been seen to lie low there since. False if nothing was shut."""
+        shut, self._shut = self._shut, []
+        for x_m, y_m, radius_m, shut_s in shut:
+            i, j = self._disc(x_m, y_m, radius_m)
+            is_same = self.low_s[i, j] == np.float32(shut_s)
+            self.low_s[i[is_same], j[is_same]] = NEVER_S
+            self._changed(*self.place(x_m, y_m), radius_m)
+        return bool(shut)
 
     def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
         """What is here cannot be explored any better: it counts as covered."""

@@ -23,6 +23,7 @@ JOBS = (MotionCommand.MOVETO, MotionCommand.INVESTIGATE, MotionCommand.EXPLORE)
 ON_ITS_WAY = (MovetoStatus.SET, MovetoStatus.NEAR_GOAL)
 SPEED, AVOID = 1, 2  # our own in `force` of 42 to 44, where it has so many numbers: highest speed (m/s, 0 = the parameter), and A
 SUCCEEDED, RUNNING = "succeeded", "running"
+WHATEVER_THE_COMMAND = (LinkStatus.STOPPED_THREAD, LinkStatus.LASER_FATAL)  # these are not of an earlier command
 
 
 class Motion:
@@ -62,7 +63,7 @@ class Motion:
         was_at_work = self.job is not None
         self._end_job()
         if not is_finite(command):
-            return self._refuse(now_s, "the command has a number that is not finite")
+            return self._refuse(now_s, "a number of the command is missing or not finite")
         if split_flags(command.flags) is not None:
             return msgspec.structs.replace(command, stamp_s=now_s)
         if command.flags == MotionCommand.SET_RECTANGLE:
@@ -92,7 +93,7 @@ class Motion:
             self.verdict = Verdict(reason=state.reason, text=state.text)
 
     def status(self, now_s: float, avoid: FVectorState | None, sent: ActuatorState | None) -> FVectorState:
-        """`motion/status`: data and element[0..1] are avoidance's; a stopped avoidance shows always.
+        """`motion/status`: data and element[0..1] are avoidance's; a stopped link below and a rebooting laser show always.
 
         Args:
             sent: what went down and avoidance has not accepted yet, so that its status is still that of an earlier command; else None.
@@ -103,8 +104,9 @@ class Motion:
         reason, text = self.verdict.reason, self.verdict.text
         if avoid is not None:
             data = avoid.data
-            if sent is None or avoid.element[1] == GotoStatus.STOPPED_THREAD:
-                link, goto = avoid.element
+            is_dead = avoid.element[1] == GotoStatus.STOPPED_THREAD
+            if sent is None or is_dead or avoid.element[0] in WHATEVER_THE_COMMAND:
+                link, goto = avoid.element[0], avoid.element[1] if sent is None or is_dead else goto
                 if not reason:
                     reason, text = avoid.reason, avoid.text
         return FVectorState(now_s, data, (link, goto, int(self.moveto), int(self._shown())), reason, text)

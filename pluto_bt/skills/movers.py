@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,6 +32,7 @@ class Movers:
 
     def __init__(self) -> None:
         self._last: tuple[Array, Beams, Mask] = (np.zeros((0, 2)), np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.bool_))
+        self._last_pieces: _Pieces | None = None  # of the last scan, once somebody needed them
         self._stamp_s = -np.inf
         self._walkers = np.zeros((0, 5))  # x, y at the last scan, velocity x, y, stamp of the scan that saw him walk
 
@@ -46,18 +50,19 @@ class Movers:
             moved: (n,) whether the beam ends in what was free space.
         """
         last, self._last = self._last, (points, beams, moved)
+        last_pieces, self._last_pieces = self._last_pieces, None
         dt_s, self._stamp_s = stamp_s - self._stamp_s, stamp_s
         expected = self._walkers[self._walkers[:, 4] > stamp_s - FOLLOW_S]
         expected[:, :2] += expected[:, 2:4] * min(dt_s, 1.0)
         self._walkers = np.zeros((0, 5))
         if not len(points) or (np.count_nonzero(moved) < MOVED_BEAMS and not len(expected)):
             return np.zeros(len(points), dtype=bool), np.zeros((len(points), 2))
-        starts, sizes, centres, is_narrow = _pieces(points, beams, moved)
+        starts, sizes, centres, is_narrow = self._last_pieces = _pieces(points, beams, moved)
         walks = (np.add.reduceat(moved.astype(np.intp), starts) >= MOVED_BEAMS) & is_narrow
         before = np.zeros((0, 2))
         if len(last[0]) and 0.0 < dt_s < 1.0:
-            _, _, before, was_narrow = _pieces(*last)
-            before = before[was_narrow]
+            pieces = last_pieces or _pieces(*last)
+            before = pieces.centres[pieces.is_narrow]
         rows = np.zeros((len(starts), 5))  # as self._walkers
         rows[:, :2], rows[:, 4] = centres, stamp_s
         for i in np.flatnonzero(is_narrow).tolist():
@@ -77,43 +82,75 @@ def gone_away(points: Array, beams: Beams, before: Array, beams_before: Beams, l
         points, beams: as of `Movers.velocities`. before, beams_before: the same of a scan `dt_s` older.
         left: (m,) whether a point of `before` lies in what is free space now.
     """
-    starts, sizes, centres, is_narrow = _pieces(before, beams_before, left)
-    is_gone = (np.add.reduceat(left.astype(np.intp), starts) >= np.maximum(MOVED_BEAMS, LEFT_SHARE * sizes)) & is_narrow
+    old = _pieces(before, beams_before, left)
+    is_gone = (np.add.reduceat(left.astype(np.intp), old.starts) >= np.maximum(MOVED_BEAMS, LEFT_SHARE * old.sizes)) & old.is_narrow
     if not is_gone.any() or not len(points):
         return np.zeros((0, 4))
-    remains = before[~np.repeat(is_gone, sizes)]
-    _, _, now, is_one = _pieces(points, beams, np.zeros(len(points), dtype=np.bool_))
-    now = np.array([at for at in now[is_one] if _nearest(at, remains, APART_M) < 0]).reshape(-1, 2)  # what stood there before is nobody
-    found = [(at, now[k]) for at in centres[is_gone] if (k := _nearest(at, now, FASTEST_MPS * dt_s)) >= 0]
+    remains = before[~np.repeat(is_gone, old.sizes)]
+    new = _pieces(points, beams, np.zeros(len(points), dtype=np.bool_))
+    now = np.array([at for at in new.centres[new.is_narrow] if _nearest(at, remains, APART_M) < 0]).reshape(-1, 2)  # what stood there is nobody
+    found = [(at, now[k]) for at in old.centres[is_gone] if (k := _nearest(at, now, FASTEST_MPS * dt_s)) >= 0]
     return np.array([(*to, *((to - at) / dt_s)) for at, to in found]).reshape(-1, 4)
 
 
-def _pieces(points: Array, beams: Beams, moved: Mask) -> tuple[Beams, Beams, Array, Mask]:
-    """The pieces of a scan that hang together: first point, number of points and centre of each, and whether it may be a person or a vehicle.
+class _Pieces(NamedTuple):
+    """The pieces of a scan that hang together: first point, number of points and centre of each, and whether it may be a person or a vehicle."""
+
+    starts: Beams
+    sizes: Beams
+    centres: Array
+    is_narrow: Mask
+
+
+def _pieces(points: Array, beams: Beams, moved: Mask) -> _Pieces:
+    """The pieces of the points of a scan, as `velocities` takes them; at least one."""
+    starts, is_narrow = apart(points[:, 0], points[:, 1], beams, moved)
+    sizes = np.diff(starts, append=len(points))
+    return _Pieces(starts, sizes, np.add.reduceat(points, starts, axis=0) / sizes[:, None], is_narrow)
+
+
+@kernel
+def apart(x_m: Array, y_m: Array, beams: Beams, moved: Mask) -> tuple[Beams, Mask]:
+    """Where the pieces of a scan begin, and which of them may be a person or a vehicle: (k,), (k,).
 
     Somebody so near to a wall that he hangs together with it is a piece of his own: the beams that end in former free space. The rest of the
     wall is nobody.
+
+    Args:
+        x_m, y_m, beams, moved: (n,) as `Movers.velocities` takes them, n > 0.
     """
-    steps = np.hypot(points[1:, 0] - points[:-1, 0], points[1:, 1] - points[:-1, 1])
-    begins = np.concatenate(([True], (steps > APART_M) | (np.diff(beams) > 3)))
-    starts, ends, widths = _spans(points, begins)
-    is_rest = np.zeros(len(points), dtype=np.bool_)
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], moved.astype(np.int8), [0]))))
-    for first, end in edges.reshape(-1, 2).tolist():
-        i = int(np.searchsorted(starts, first, side="right")) - 1
-        if end - first >= RUN_BEAMS and end <= ends[i] and widths[i] > PERSON_M:
-            is_rest[starts[i] : ends[i]] |= ~moved[starts[i] : ends[i]]
-            begins[first], begins[end : end + 1] = True, True
-    starts, ends, widths = _spans(points, begins)
-    centres = np.add.reduceat(points, starts, axis=0) / (ends - starts)[:, None]
-    return starts, ends - starts, centres, (widths < WIDEST_M) & ~is_rest[starts]
+    n = x_m.shape[0]
+    begins, is_rest = np.zeros(n + 1, dtype=np.bool_), np.zeros(n, dtype=np.bool_)
+    begins[0] = begins[n] = True
+    for i in range(1, n):
+        begins[i] = math.hypot(x_m[i] - x_m[i - 1], y_m[i] - y_m[i - 1]) > APART_M or beams[i] - beams[i - 1] > 3
+    first = 0
+    for end in range(1, n + 1):
+        if begins[end]:
+            if math.hypot(x_m[end - 1] - x_m[first], y_m[end - 1] - y_m[first]) > PERSON_M:
+                cut_out(moved, first, end, begins, is_rest)
+            first = end
+    starts, is_narrow = np.zeros(n, dtype=np.intp), np.zeros(n, dtype=np.bool_)
+    count = first = 0
+    for end in range(1, n + 1):
+        if begins[end]:
+            width_m = math.hypot(x_m[end - 1] - x_m[first], y_m[end - 1] - y_m[first])
+            starts[count], is_narrow[count] = first, width_m < WIDEST_M and not is_rest[first]
+            count, first = count + 1, end
+    return starts[:count], is_narrow[:count]
 
 
-def _spans(points: Array, begins: Mask) -> tuple[Beams, Beams, Array]:
-    """First point, the one behind the last, and width of each piece, given where they begin."""
-    starts = np.flatnonzero(begins)
-    ends = np.append(starts[1:], len(points))
-    return starts, ends, np.hypot(points[ends - 1, 0] - points[starts, 0], points[ends - 1, 1] - points[starts, 1])
+@inline_kernel
+def cut_out(moved: Mask, first: int, end: int, begins: Mask, is_rest: Mask) -> None:
+    """Where the piece [first, end) has a run of beams that ended in former free space, let it begin and end there; mark the rest of the piece."""
+    run, is_cut = first, False
+    for i in range(first, end):
+        if not moved[i]:
+            run = i + 1
+        elif i + 1 - run >= RUN_BEAMS and (i + 1 == moved.shape[0] or not moved[i + 1]) and (run > first or first == 0 or not moved[first - 1]):
+            begins[run] = begins[i + 1] = is_cut = True
+    for i in range(first, end):
+        is_rest[i] = is_cut and not moved[i]
 
 
 def _nearest(place: Array, others: Array, within_m: float) -> int:

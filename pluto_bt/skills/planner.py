@@ -13,7 +13,7 @@ from pluto_bt.skills.smoothing import pulled, resampled, smoothed
 from pluto_bt.skills.way_kernels import search
 
 Point = tuple[float, float]
-RELAXED_M = 0.8  # so near to its start and its goal a way may be tighter
+RELAXED_M = 0.8  # so near to its start and its goal a way may be as tight as they are
 REACH_CELLS = 1.0
 CORNER_GAP_M = 0.1  # left beside the corners of a robot in a bend
 TURNING_GAP_M = 0.08  # a way with so much around a robot that turns on the spot costs no more: doors are then approached straight

@@ -46,9 +46,10 @@ class Advice(NamedTuple):
 class RayFollowing:
     """One ray from its beginning to its end."""
 
-    def __init__(self, map: LocalMap, least_m: float, openings: Openings) -> None:
+    def __init__(self, map: LocalMap, least_m: float, room_m: float, openings: Openings) -> None:
+        """`least_m`: clearance of the narrowest way; `room_m`: clearance of a place where the robot can turn on the spot."""
         p = map.parameters
-        self._map, self._least_m, self._openings = map, least_m, openings
+        self._map, self._least_m, self._room_m, self._openings = map, least_m, room_m, openings
         self._ahead_m = min(3.0 * p.path_half_width_m, 6.0)
 
     def begin(self, way: Way, find: Callable[[], Way | None], now_s: float, robot: Planar) -> None:
@@ -89,10 +90,17 @@ class RayFollowing:
         if now_s - self._found_s >= (HASTE_S if blocked else REPLAN_S):
             self._found_s = now_s
             way = self._find()
+            if not blocked and (way is None or self._turns_back(robot, way)) and self._map.clearance_m(*robot[:2]) < self._room_m:
+                return True  # in a doorway: the old way leads on to where there is room to turn
             if way is None:
                 return False
             self._way = way
         return True
+
+    def _turns_back(self, robot: Planar, way: Way) -> bool:
+        """True if the robot has to turn on the spot before it can follow a way."""
+        x, y = way.points[min(len(way.points) - 1, math.ceil(self._room_m / self._map.cell_m))].tolist()
+        return abs(wrap_angle(math.atan2(y - robot[1], x - robot[0]) - robot[2])) > TURN_RAD
 
     def _is_free(self) -> bool:
         """Nothing stands on the next stretch."""

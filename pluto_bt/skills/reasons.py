@@ -31,7 +31,7 @@ WALL_LOST = "wall-lost"
 WALKER = "walker"
 
 CHAIN_REASONS: dict[str, str] = {
-    BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is not finite; zero velocity",
+    BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is missing or not finite; zero velocity",
     BUMPER: "a bumper is or was pressed; back off, release it, then send a new command",
     BUMPER_STALE: "the bumpers are missing or too old; nothing else feels what is lower than every sensor",
     CHAIN_STOPPED: "a link farther down the chain does not run: nothing reaches the base",

@@ -23,11 +23,13 @@ BEYOND_M = 1.0  # what explains an echo may lie a little beyond the reach
 
 
 class ScanView(NamedTuple):
-    """A scan with the place it was taken from; `laser` is in the frame of dead reckoning, None where that is not known (any more)."""
+    """A scan with the place it was taken from; `laser` is in the frame of dead reckoning, None where that is not known (any more), for want of
+    what `lacks` says: "odometry" or "wrist"."""
 
     scan: LaserScan
     laser: Planar | None
     tilt_rad: float = 0.0
+    lacks: str = ""
 
 
 class Sight:
@@ -106,7 +108,7 @@ class Sight:
         if self.laser is None or self._watch is None:
             return
         self._scan = view.scan
-        if self._watch.look(view.scan, view.laser) and view.laser is not None:
+        if self._watch.look(view.scan, view.laser, view.lacks) and view.laser is not None:
             self._obstacles.add_scan(view.scan, view.laser, self.laser.z_m, view.tilt_rad, now_s)
 
     def _listen(self, sonar: SonarState, ring: SonarRing, robot: Planar, with_laser: bool, now_s: float) -> None:

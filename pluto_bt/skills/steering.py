@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pluto_bt.maps.geometry import wrap_angle
-from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Outline
 
 HEADINGS = 72
@@ -74,8 +74,8 @@ class Steer:
         change = self._last_rad is not None
         last_rad = wrap_angle(self._last_rad - heading_rad) if self._last_rad is not None else 0.0
         best = weigh(headings, ways, sum_rad, goal_rad, last_rad, change, self._side, enough_m, turnable_rad[0], turnable_rad[1])
-        chosen_rad, free_m, room_m = float(headings[best]), float(ways[best, 0]), float(ways[best, 1])
-        goal_is_free = bool(ways[-1, 0] >= enough_m)
+        chosen_rad, free_m, room_m = float(headings[best]), float(ways[0, best]), float(ways[1, best])
+        goal_is_free = bool(ways[0, -1] >= enough_m)
         self._remember(chosen_rad, goal_rad, heading_rad, goal_is_free)
         return Steering(chosen_rad, free_m, room_m, goal_is_free)
 
@@ -104,27 +104,33 @@ def met(points: Array, speed_mps: float, most_s: float) -> Array:
 
 @kernel
 def corridors(points: Array, headings: Array, front_m: float, back_m: float, side_m: float, look_m: float, far_m: float) -> Array:
-    """For each heading, how far the outline can go straight on it, and how much room it has beside it: (m, 2) metres.
+    """For each heading, how far the outline can go straight on it, and how much room it has beside it: (2, m) metres.
 
     The free way is measured from the front edge after turning to the heading; a point counts if it lies within the outline's
     half width plus the point's margin. The room is what is left between outline and points on the first `look_m`, at most 1 m.
     """
-    ways = np.zeros((headings.shape[0], 2))
+    ways, cos, sin = np.zeros((2, headings.shape[0])), np.zeros(headings.shape[0]), np.zeros(headings.shape[0])
     for k in range(headings.shape[0]):
-        c, s = np.cos(headings[k]), np.sin(headings[k])
-        free_m, room_m = far_m, 1.0
-        for i in range(points.shape[0]):
-            ahead, aside = c * points[i, 0] + s * points[i, 1], abs(c * points[i, 1] - s * points[i, 0])
-            if ahead < -back_m or ahead > far_m + front_m:
-                continue
-            gap_m = aside - side_m
-            if gap_m < points[i, 2] + CLEAR_M:
-                if ahead > 0.0:
-                    free_m = min(free_m, max(0.0, ahead - front_m - points[i, 2]))
-            elif ahead < look_m:
-                room_m = min(room_m, gap_m)
-        ways[k, 0], ways[k, 1] = free_m, room_m
+        cos[k], sin[k], ways[0, k], ways[1, k] = np.cos(headings[k]), np.sin(headings[k]), far_m, 1.0
+    for i in range(points.shape[0]):
+        stand_in_the_way(points[i, 0], points[i, 1], points[i, 2], cos, sin, front_m, back_m, side_m, look_m, far_m, ways[0], ways[1])
     return ways
+
+
+@inline_kernel
+def stand_in_the_way(
+    x_m: float, y_m: float, margin_m: float, cos: Array, sin: Array, front_m: float, back_m: float, side_m: float, look_m: float, far_m: float,
+    free_m: Array, room_m: Array,
+) -> None:  # fmt: skip
+    """Let one point shorten the ways of all headings (m,), given by their directions. Without a branch in the loop, so that it is vectorised."""
+    for k in range(cos.shape[0]):
+        ahead_m, gap_m = cos[k] * x_m + sin[k] * y_m, abs(cos[k] * y_m - sin[k] * x_m) - side_m
+        is_beside = (ahead_m >= -back_m) & (ahead_m <= far_m + front_m)
+        is_in_the_way, is_near = gap_m < margin_m + CLEAR_M, ahead_m < look_m
+        to_it_m = ahead_m - front_m - margin_m
+        to_it_m = to_it_m if to_it_m > 0.0 else 0.0
+        free_m[k] = to_it_m if is_beside & is_in_the_way & (ahead_m > 0.0) & (to_it_m < free_m[k]) else free_m[k]
+        room_m[k] = gap_m if is_beside & (not is_in_the_way) & is_near & (gap_m < room_m[k]) else room_m[k]
 
 
 @kernel
@@ -163,7 +169,7 @@ def weigh(
         detour -= 2.0 * np.pi * np.round(detour / (2.0 * np.pi))
         off = heading - sum_rad
         off -= 2.0 * np.pi * np.round(off / (2.0 * np.pi))
-        cost = abs(off) + BLOCKED_RAD * max(0.0, 1.0 - ways[k, 0] / enough_m) + NARROW_RAD * max(0.0, 1.0 - ways[k, 1] / ROOM_M)
+        cost = abs(off) + BLOCKED_RAD * max(0.0, 1.0 - ways[0, k] / enough_m) + NARROW_RAD * max(0.0, 1.0 - ways[1, k] / ROOM_M)
         if has_last:
             change = heading - last_rad
             cost += CHANGE_RAD_PER_RAD * abs(change - 2.0 * np.pi * np.round(change / (2.0 * np.pi)))

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 HOME_X, HOME_Y, COS, SIN, BASE, HEIGHT, EDGE = range(7)  # of the rectangle, in cells; BASE <= 0 = there is none
 NARROW, MIDDLE, UNKNOWN = 3.0, 1.0, 0.3  # what a step costs more: where it is narrower than a path, beside the middle of the street, unseen
 TIGHT = 6.0  # where the robot stands nearer to something than the narrowest way allows
+ROUGH = 0.5  # cells: so much a wall of cells is rougher than the wall
 SIDE = 2  # a place is worth going to if much of the block of (2 * SIDE + 1)² cells around it is not covered
 WORTH = 0.4
 
@@ -81,6 +82,12 @@ def is_worth(i: int, j: int, covered: Bytes, evidence: Bytes, rectangle: Array) 
     return all_ > 0 and new >= WORTH * all_
 
 
+@inline_kernel
+def as_tight_as(clearance: float, least: float) -> float:
+    """The least clearance of a way beside its start or its goal: no gap that is tighter than that place itself is passed on the way there."""
+    return float(min(least, max(1.0, clearance - ROUGH)))
+
+
 @kernel
 def search(
     evidence: Bytes, covered: Bytes, clearance: Floats, start: tuple[int, int], goal: tuple[int, int], goal_reach: float, rectangle: Array,
@@ -89,7 +96,7 @@ def search(
     """The cheapest way from `start` to within `goal_reach` of `goal`, or (goal_reach < 0) to the nearest place worth covering.
 
     Args:
-        least: clearance without which nothing passes, except within `relaxed` of start and goal.
+        least: clearance without which nothing passes. Within `relaxed` of a start or a goal that has less itself as little as it has will do.
         room: clearance that a place worth covering must have, so that the robot can turn there.
         half: clearance of an open path; narrower costs more. wide: clearance from which on more is not better.
         greed: so many times the rest of the way counts; above 1 far fewer cells are looked at, and the way is hardly longer: at most
@@ -105,6 +112,8 @@ def search(
     cost[begin], came[begin] = 0.0, begin
     settled = np.zeros(rows * columns, dtype=np.uint8)  # else a greedy search goes over the same ground again and again where no way leads on
     count = push(keys, places, 0, 0.0, begin)
+    least_at_start = as_tight_as(clearance[start[0], start[1]], least)
+    least_at_goal = as_tight_as(clearance[goal[0], goal[1]], least) if goal_reach >= 0.0 else least
     while count > 0:
         count = pop(keys, places, count)
         at = int(places[count])
@@ -128,10 +137,11 @@ def search(
                     continue  # known as near already as any step from here could bring it
                 free = clearance[a, b]
                 if free < least or rectangle[BASE] > 0.0:
-                    from_end = min(math.hypot(a - start[0], b - start[1]), math.hypot(a - goal[0], b - goal[1]) if goal_reach >= 0.0 else 1e9)
-                    if free < least and (from_end > relaxed or free < 1.0):
+                    is_begun = math.hypot(a - start[0], b - start[1]) <= relaxed
+                    is_ending = goal_reach >= 0.0 and math.hypot(a - goal[0], b - goal[1]) <= relaxed
+                    if free < min(least_at_start if is_begun else least, least_at_goal if is_ending else least):
                         continue
-                    if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (rectangle[EDGE] if from_end > relaxed else -0.5):
+                    if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (-0.5 if is_begun or is_ending else rectangle[EDGE]):
                         continue
                 factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
                 if free < half:

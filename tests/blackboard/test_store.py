@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import threading
+from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -164,6 +166,46 @@ class TestInbox:
         inbox.post("avoid", ActuatorState(0.0, 1))
         operator.join()
         assert taken[0] is not None and taken[0].is_stop and inbox.take() is None
+
+    @pytest.mark.parametrize(
+        ("fields", "plain"),
+        [
+            ({"position": [3, 4], "velocity": (1, 0), "force": [2]}, ActuatorState(0.0, 32, (3.0, 4.0), (1.0, 0.0), (0.0, 0.0), (2.0,))),
+            ({"flags": np.int64(32), "position": np.array([3.0, 4.0])}, ActuatorState(0.0, 32, (3.0, 4.0))),
+            ({"flags": 32.0, "acceleration": (), "force": ()}, ActuatorState(0.0, 32)),
+        ],
+    )
+    def test_lists_arrays_and_whole_floats_are_taken_for_what_they_say(self, fields: Any, plain: ActuatorState) -> None:
+        inbox = Inbox("motion")
+        inbox.post("operator", ActuatorState(**({"stamp_s": 0, "flags": 32} | fields)))
+        letter = inbox.take()
+        assert letter is not None and letter.command == plain
+        assert type(letter.command.flags) is int and {type(x) for x in (*letter.command.position, *letter.command.velocity)} == {float}
+
+    @pytest.mark.parametrize(
+        ("fields", "flags"),
+        [
+            ({"position": (3.0,)}, 42), ({"position": ()}, 42), ({"position": None}, 42), ({"velocity": (1.0, 2.0, 3.0)}, 42),
+            ({"velocity": ("1", "0")}, 42), ({"velocity": "10"}, 42), ({"velocity": (0.3, None)}, 42), ({"velocity": (10**400, 0)}, 42),
+            ({"force": 1.0}, 42), ({"stamp_s": None}, 42), ({"flags": 0.5}, 0), ({"flags": math.nan}, 0), ({"flags": "42"}, 0),
+        ],
+    )  # fmt: skip
+    def test_what_has_not_the_shape_of_a_command_has_no_number_that_a_link_would_take(self, fields: Any, flags: int) -> None:
+        inbox = Inbox("motion")
+        inbox.post("operator", ActuatorState(**({"stamp_s": 0.0, "flags": 42} | fields)))
+        letter = inbox.take()
+        assert letter is not None and letter.command.flags == flags
+        assert all(map(math.isnan, (*letter.command.position, *letter.command.velocity)))
+
+    def test_what_is_no_command_at_all_is_an_error_of_the_sender(self) -> None:
+        with pytest.raises(TypeError, match="expected an ActuatorState, found str"):
+            Inbox("motion").post("operator", "go")  # type: ignore[arg-type]
+
+    def test_a_plain_command_travels_as_the_object_it_is(self) -> None:
+        inbox, command = Inbox("motion"), ActuatorState(0.0, 32, (3.0, 4.0))
+        inbox.post("operator", command)
+        letter = inbox.take()
+        assert letter is not None and letter.command is command
 
 
 class TestTables:

@@ -75,7 +75,8 @@ class Rig:
         self._base_s = -1.0
         self._distance = 0.0
         self._gap = 0.0
-        names = ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "Localization/Dead-Reckoning", "Localization/Pose", "filter/status")
+        names = ("ATRV2/Drive/Raw", "ATRV2/Sonar", "ATRV2/Bumper", "sick/scan", "wrist/state", "Localization/Dead-Reckoning", "Localization/Pose",
+                 "filter/status")  # fmt: skip
         self._publish = {name: self.board.publisher(name, self.board.topic(name).writer) for name in names}
         self._scans: list[LaserScan] = []
         self._woken: set[str] = set()
@@ -210,6 +211,8 @@ class Rig:
                 self._publish["ATRV2/Drive/Raw"].put(raw, now)
             for name in ("Localization/Dead-Reckoning", "Localization/Pose"):
                 self._publish[name].put(Pose(now, (x, y, 0.0, th, 0.0, 0.0)), now)
+        if k % 5 == 0 and self.platform.devices.wrist:
+            self._publish["wrist/state"].put(ActuatorState(now), now)  # it looks ahead
         if k % 10 == 0:
             self._publish["ATRV2/Bumper"].put(BumperState(now, self.front, self.back), now)
             self.path.append(self.pose)

@@ -151,3 +151,37 @@ def test_an_opening_at_the_side_of_a_street_is_told_once_where_it_begins() -> No
     told = [(x, side) for x in np.arange(-10.0, 18.0, 0.1) if (side := openings.look((float(x), 0.0, 0.0), 0.0))]
     assert [side for _, side in told] == ["left"]
     assert 4.0 < told[0][0] < 7.5
+
+
+def posts(x_m: float, apart_m: float) -> list[tuple[float, float, float, float]]:
+    """A fence of posts along x."""
+    return [(x_m, y_m, x_m, y_m) for y_m in np.arange(-20.0, 20.0, apart_m).tolist()]
+
+
+def test_no_way_leads_through_a_fence_of_posts_to_a_goal_just_behind_it() -> None:
+    ways = Ways(ground(*posts(5.0, 1.0)), OUTLINE)
+    assert ways.to_goal(HERE, (3.8, 0.4), None) is not None
+    way = ways.to_goal(HERE, (6.2, 0.4), None)
+    assert way is None or max(abs(y) for _, y in way.points.tolist()) > 15.0
+
+
+def test_a_goal_beside_a_wall_is_reached_as_near_as_it_lies_and_so_is_the_way_from_there() -> None:
+    ways = Ways(ground((5.0, -20.0, 5.5, 20.0)), OUTLINE)
+    for a, b in ((HERE, (4.5, 3.0)), ((4.5, 3.0, 0.0), (0.0, 0.0))):
+        way = ways.to_goal(a, b, None)
+        assert way is not None and math.dist(way.points[-1], b) < 0.5
+
+
+def test_what_was_shut_is_open_again_but_not_what_was_seen_there_since() -> None:
+    map = ground()
+    map.shut(3.0, 0.0, 0.5, 10.0)
+    map.shut(3.0, 6.0, 0.5, 10.1)
+    seen = map.cell(3.0, 6.0)
+    map.low_s[seen] = 12.0
+    map.refresh(12.0)
+    assert map.clearance_m(3.0, 0.0) == 0.0 and map.clearance_m(3.0, 6.0) == 0.0
+    assert map.reopen()
+    map.refresh(12.0)
+    assert map.clearance_m(3.0, 0.0) > 4.0 and map.clearance_m(3.0, 6.0) == 0.0
+    assert map.clearance_m(3.4, 6.0) > 0.0
+    assert not map.reopen(), "once"

@@ -155,6 +155,7 @@ def test_investigate_approaches_and_circles(robot: Any) -> None:
     assert [code for code in r.codes if code[1] in (11, 12)] == [(0, 11), (0, 12)]
     assert max(abs(distance - 2.0) for distance in away) < 0.2
     assert r.system.board.newest("arm/state").value.position[0] == 1.0
+    assert -1 not in {code[0] for code in r.links}, "43 refreshes itself, also while the arm is unfolded"
 
 
 def test_45_while_a_job_is_at_work_changes_nothing(robot: Any) -> None:

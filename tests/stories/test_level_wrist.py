@@ -63,3 +63,24 @@ def test_a_laser_that_stays_tilted_while_the_robot_drives_is_told_once_with_the_
     said = run.said("laser-tilted")
     assert len(said) == times, run.text
     assert all("deg" in line and 'PointWrist with tilt_deg="0"' in line for line in said)
+
+
+SWEEPING = '<Parallel success_count="1" failure_count="1"><GoTo goal="10;0"/><SweepWrist rounds="-1"/></Parallel>'
+SILENT = {  # what the wrist does, and what stands in the way of the legs → how the run ends
+    "at rest, on hard ground": ('<GoTo goal="9;0"/>', "", "SUCCESS", ""),
+    "at rest, in the mud": ('<GoTo goal="9;0" timeout_s="100"/>', '<terrain id="mud" slip="1.0">4,-2 6,-2 6,2 4,2</terrain>', "FAILURE", "stuck"),
+    "sweeping": (SWEEPING, "", "FAILURE", "laser-stale"),
+}
+
+
+@pytest.mark.parametrize("kind", ["off", "frozen"])
+@pytest.mark.parametrize(("tree", "parts", "result", "reason"), SILENT.values(), ids=SILENT)
+def test_a_wrist_that_falls_silent_blinds_the_robot_only_where_it_may_have_moved_since(
+    scenario: Play, files: Any, tree: str, parts: str, result: str, reason: str, kind: str
+) -> None:
+    script = f'<script><at t="3"><fault device="wrist" kind="{kind}"/></at></script>'
+    world, mission = files(f'<world name="room">{ROOM}{parts}<robot x="-1" y="0"/>{script}</world>', tree)
+    run = scenario(world, mission=mission, max_time_s=200.0)
+    assert (run.result, run.reason, run.collisions) == (result, reason, 0), run.text
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.5
+    assert reason != "laser-stale" or "the wrist is silent" in run.text

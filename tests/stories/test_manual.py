@@ -107,6 +107,18 @@ def test_numbers_that_are_none_are_refused_at_every_link(link_and_robot: tuple[s
         assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
 
 
+@pytest.mark.parametrize(("position", "velocity"), [((), (0.3, 0.0)), ((0.0,), (0.3, 0.0)), ((0.0, 0.0), (0.3,)), ((0.0, 0.0), ("0.3", "0"))])
+def test_a_command_with_an_element_missing_is_refused_and_breaks_no_link(link_and_robot: tuple[str, RawRobot], position: Any, velocity: Any) -> None:
+    link, r = link_and_robot
+    r.post(0, velocity=(0.3, 0.0), to=link)
+    r.run(0.8)
+    r.post(0, position, velocity, to=link)
+    r.run(0.8)
+    assert r.status_of(link).reason == "bad-command"
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+    assert [part.module.name for part in r.system.parts if part.failures] == []
+
+
 # ------------------------------------------------------------------ threads and inboxes
 
 
@@ -187,6 +199,25 @@ def test_a_goto_goes_on_when_motion_alone_is_stopped(robot: Make) -> None:
     r.module("motion", False)
     assert r.status.element[3] == -10
     assert r.run(30.0, lambda: r.status_of("avoid").element == (0, 1))
+
+
+def test_a_job_ends_with_its_motion_thread_and_leaves_a_status_of_rest(robot: Make) -> None:
+    r = robot()
+    r.order(42, (20.0, 0.0))
+    assert r.run(20.0, lambda: r.velocity[0] > 0.3)
+    r.module("motion", False)
+    assert (r.status.element, r.status.data) == ((0, 0, 0, -10), (0.0, 0.0))
+    r.run(2.0)
+    assert r.velocity[0] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_stopped_drive_shows_through_all_links_without_a_gap_whatever_is_commanded(robot: Make) -> None:
+    r = robot()
+    r.module("drive", False)
+    for flags in (0, 32, 42, 30):
+        r.order(flags, (8.0, 0.0), (0.3, 0.0))
+        r.run(3.0)
+        assert {code[0] for code in r.links} == {-10}, flags
 
 
 def test_what_was_posted_while_avoidance_was_stopped_is_dropped_and_not_shown_as_running(robot: Make) -> None:
