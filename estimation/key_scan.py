@@ -13,9 +13,12 @@ from estimation.scan_match import ScanStep, match_scans
 from estimation.se2 import IDENTITY, Pose2, between, compose
 
 FARTHEST_M = 20.0  # what is farther off is not compared: there a sixth of a degree is more than a point may lie off its line
-GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines: the match is good
+GOOD_FIT, LEAST_POINTS = 0.6, 40  # a share of the points on their lines, of so many: the match is good
+LEAST_ODD_POINTS = 25  # fewer tell nothing
 BETTER_FIT = 0.1  # so much more than where localisation believes to be, another guess must explain
-NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all
+NO_FIT, ONE_SIDED, SIDES = 0.4, 0.08, 0.12  # another place: fewer fit and both sides differ, or hardly any fits at all …
+POOR_FIT, MUCH = 0.55, 0.22  # … or many differ to both sides
+HIDDEN_FIT, ALL_HIDDEN_FIT = 0.2, 0.03  # a crowd hides much and shows nothing farther; only a closed ring of people hides all
 CROWDED, CROWD_M = 0.4, 1.2  # who stands so near fills so much of a scan that it says nothing of the place
 
 
@@ -60,10 +63,19 @@ def is_good(match: ScanStep) -> bool:
     return match.points >= LEAST_POINTS and match.fits >= GOOD_FIT
 
 
-def is_odd(match: ScanStep) -> bool:
-    """True if the scans are of two places: few points fit, and both sides differ, or hardly any fits at all."""
-    both_sides = match.fits < NO_FIT and min(match.longer, match.shorter) > SIDES
-    return match.points >= LEAST_POINTS and (both_sides or match.fits < ONE_SIDED)
+def is_odd(match: ScanStep, crowd_before: bool = False, crowd_now: bool = False) -> bool:
+    """True if the scans are of two places: few points fit, and both sides differ, or hardly any fits at all.
+
+    Args:
+        crowd_before, crowd_now: something near filled much of the one scan or the other. It may be people, and those hide a place; but who
+            comes lets nobody see farther than before.
+    """
+    if match.points < LEAST_ODD_POINTS:
+        return False
+    both = min(match.longer, match.shorter)
+    if crowd_before or crowd_now:
+        return not crowd_before and (match.fits < ALL_HIDDEN_FIT or (match.fits < HIDDEN_FIT and both > SIDES))
+    return match.fits < ONE_SIDED or (match.fits < NO_FIT and both > SIDES) or (match.fits < POOR_FIT and both > MUCH)
 
 
 def difference(reckoned: Pose2, seen: Pose2) -> tuple[float, float, float]:

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from estimation.home_scan import Home
-from estimation.key_scan import KeyScan, best_match, difference, is_good, is_odd
+from estimation.kept_scans import KeptScans, held_against, is_far
+from estimation.key_scan import KeyScan, difference, is_good, is_odd
 from estimation.news import FOUND, LOST, News
 from estimation.reckoning import Motion, Reckoning, Sums, motion_between
 from estimation.scan_match import ScanStep
@@ -27,13 +28,12 @@ from estimation.way_trial import WayTrial
 Array = NDArray[np.float64]
 
 LEAST_BEAMS = 0.75  # of a scan must be numbers
-MOST_PAN_RAD = 1.6  # a laser that was panned farther sees too little of the same
 SIGMAS = 5.0
 FASTER, ASIDE_M, SUDDEN_M, JITTER_RAD = 2.0, 0.2, 0.08, 0.1  # than the platform's limits: nobody drives or turns so fast, or so far sideways
 LEAST_GAIN = 0.08  # so many more points fit where the laser sees the robot
 SEES_ALONG_M, LEAST_WAY_M = 0.008, 0.3  # along a bare street a laser sees no way; nothing is learned there, nor from less of a way
-KEY_WAY_M, KEY_TURN_RAD, KEY_S = 1.0, 0.5, 3.0  # a scan is compared with until the robot has moved on so far
-LONGEST_GAP_S = 60.0  # without usable scans: later the place may look different
+KEY_S = 3.0  # a scan is compared with for so long, or until the robot has moved on by about `KEY_WAY_M`
+NEAR_KEYS = 1.5  # only within so many times that way does "it fits nowhere" mean another place
 ALONE_S, BLIND_S = 1.0, 1.5  # without laser: judged each second, and after so long without
 
 
@@ -63,8 +63,10 @@ class MotionCheck:
         self.fits = 1.0
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
+        self._kept = KeptScans()
         self._is_elsewhere = False
         self._home = Home()
+        self._beams = (0.0, 0.0, 0.0)  # bearing of the first one, and from each to the next, rad; the laser's range, m
         self._counted_rad = 0.0  # of the difference to this key scan, so much is owed already
         self._last = (0.0, 0.0)  # of the last comparison with this key scan: time s, difference m
         self._matched_s = self._since_s = -math.inf
@@ -120,43 +122,43 @@ class MotionCheck:
             return  # taken before the last finding: what was reckoned then is known to be wrong, and owed
         at, key = self._reckoning.at(stamp_s), self._key
         if at is None or np.count_nonzero(ranges_m > 0.0) < LEAST_BEAMS * len(ranges_m):
-            self.blind()
+            self._is_elsewhere = False  # the next one is compared with the one before
             return
-        scan = KeyScan(at, ranges_m, arm)
-        if key is None or len(ranges_m) != len(key.ranges_m) or abs(math.remainder(arm[2] - key.arm[2], math.tau)) > MOST_PAN_RAD:
-            self._is_elsewhere = False
-            self._renew(scan)
-            return
-        motion = motion_between(key.at, at)
-        if not 0.0 < motion.time_s <= LONGEST_GAP_S or _is_far(motion.pose, 3.0):
-            self._renew(scan)
-            return
-        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan, first_rad, step_rad)):
+        scan, self._beams = KeyScan(at, ranges_m, arm), (first_rad, step_rad, self._limits.max_range_m)
+        if self._is_carried_off and self._home.is_back(scan, self._seen_from_home(scan)):
             self.found()
             self.news.append(News(FOUND, "the laser sees the place again where the robot was: somebody had hidden it"))
-        match = best_match(key, scan, motion, first_rad, step_rad, self._limits.max_range_m)
-        self.fits = match.fits
-        if is_good(match):
-            if self._is_elsewhere and (home := self._seen_from_home(scan, first_rad, step_rad)) is not None and not is_odd(home):
-                self._is_elsewhere = False
-            self._weigh(scan, key, motion, match)
-            self._looked_s = stamp_s
+        compared = None if key is None else self._kept.compared(scan, key, *self._beams)
+        if compared is None:
+            self._renew(scan)  # what waits to be confirmed waits on
             return
-        self._is_elsewhere = not self._is_elsewhere and is_odd(match) and not (key.is_crowded or scan.is_crowded)
-        if self._is_elsewhere and not self._is_carried_off:
-            self._home = Home(key)
+        if compared[0] is not key:
+            self._renew(compared[0])
+        self.fits = compared[2].fits
+        self._judge(scan, *compared)
+
+    def _judge(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
+        """Is it the same place? Another one only if two scans in a row say so, and the place before does not come into view again."""
+        if is_good(match):
+            home = self._seen_from_home(scan) if self._is_elsewhere else None
+            if home is not None and not is_good(home) and not is_odd(home, False, scan.is_crowded):
+                self._renew(scan)  # that tells neither way: it waits on
+                return
+            self._is_elsewhere = home is not None and not is_good(home)
+            self._weigh(scan, key, motion, match)
+            self._looked_s = scan.at.stamp_s
+            return
+        if not is_far(motion.pose, NEAR_KEYS) and is_odd(match, key.is_crowded, scan.is_crowded):
+            self._is_elsewhere = not self._is_elsewhere
+            self._kept.forget()
+            if self._is_elsewhere and not self._is_carried_off:
+                self._home = Home(key)
         self._renew(scan)
 
-    def blind(self) -> None:
-        """A scan came that cannot be compared: the next one is compared with the one before."""
-        self._is_elsewhere = False
-
-    def _seen_from_home(self, scan: KeyScan, first_rad: float, step_rad: float) -> ScanStep | None:
-        """How a scan fits to the place where the robot was before it seemed elsewhere; None if that is too long ago."""
-        home = self._home.key
-        if home is None or not 0.0 < scan.at.stamp_s - home.at.stamp_s <= LONGEST_GAP_S:
-            return None
-        return best_match(home, scan, motion_between(home.at, scan.at), first_rad, step_rad, self._limits.max_range_m)
+    def _seen_from_home(self, scan: KeyScan) -> ScanStep | None:
+        """How a scan fits to the place where the robot was before it seemed elsewhere."""
+        held = None if self._home.key is None else held_against(self._home.key, scan, *self._beams)
+        return None if held is None else held[1]
 
     def _weigh(self, scan: KeyScan, key: KeyScan, motion: Motion, match: ScanStep) -> None:
         """A good match: does it tell of the motion that was reckoned?"""
@@ -168,6 +170,7 @@ class MotionCheck:
         seen = compose(compose(key.arm, match.step), inverse(scan.arm))
         off_m, aside_m, off_rad = difference(motion.pose, seen)
         off_rad -= self._counted_rad
+        self._kept.keep(scan)
         gain = match.fits - match.fits_as_guessed
         if gain > LEAST_GAIN and self._is_carried(motion, off_m, aside_m):
             if self._is_confirmed(stamp_s):
@@ -181,9 +184,12 @@ class MotionCheck:
         sigma_m = math.hypot(match.sigma_x_m * math.cos(key.arm[2]), match.sigma_y_m * math.sin(key.arm[2]))
         if self.way.is_suspect(off_m, SIGMAS * sigma_m, gain, motion) and not self._is_confirmed(stamp_s):
             return
-        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion) or motion.time_s > KEY_S or _is_far(motion.pose, 1.0):
-            self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
-            self._renew(scan)
+        if self.way.weigh(off_m, SIGMAS * sigma_m, gain, motion):
+            self._kept.forget()
+        elif motion.time_s <= KEY_S and not is_far(motion.pose, 1.0):
+            return
+        self._trim(off_m, sigma_m, off_rad, match.sigma_theta_rad, motion)
+        self._renew(scan)
 
     def _trim(self, off_m: float, sigma_m: float, off_rad: float, sigma_rad: float, motion: Motion) -> None:
         """A comparison that is over, and found nothing wrong: learn from it what there is."""
@@ -203,6 +209,7 @@ class MotionCheck:
         if not self.turn.weigh(stamp_s, off_rad, noise_rad, motion, self._reckoning.now_s - stamp_s):
             return False
         self._renew(scan)
+        self._kept.forget()
         self._counted_rad, self._since_s = self.turn.lag_rad, self._reckoning.now_s
         return True
 
@@ -220,14 +227,10 @@ class MotionCheck:
 
     def _lose(self, text: str) -> None:
         self._is_elsewhere = False
+        self._kept.forget()
         if not self._is_carried_off:
             self._is_carried_off = True
             self.news.append(News(LOST, text))
 
     def _renew(self, scan: KeyScan) -> None:
         self._key, self._last, self._counted_rad = scan, (0.0, 0.0), 0.0
-
-
-def _is_far(pose: Pose2, times: float) -> bool:
-    """True if so many times the way or turn lies between two scans after which another key scan is taken."""
-    return math.hypot(pose[0], pose[1]) > times * KEY_WAY_M or abs(pose[2]) > times * KEY_TURN_RAD

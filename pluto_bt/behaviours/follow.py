@@ -22,7 +22,7 @@ POST_EVERY_S: Final = 0.3
 TOLERANCE_M: Final = 0.05
 FACE_PER_S: Final = 1.2  # turn rate for each radian that the target is off
 FACING_RAD: Final = math.radians(8.0)
-ASIDE_RAD, WRIST_RAD = math.radians(40.0), math.radians(10.0)  # a target farther aside draws the laser, again when it has gone so far
+ASIDE_RAD, WRIST_RAD = math.radians(60.0), math.radians(10.0)  # a target farther aside draws the laser, again when it has gone so far
 TEXTS: Final = {Search.NOBODY: "nothing moves here", Search.LOST: "the target is out of sight for too long"}
 
 
@@ -96,8 +96,9 @@ class Follow(MotionLeaf):
             self._turn_wrist(robot, 0.0)
 
     def _point(self, robot: Robot, bearing_rad: float) -> None:
-        """Turn the laser after a target that comes near the edge of its field; look ahead again when it is ahead."""
-        wanted_rad = bearing_rad if abs(bearing_rad) > ASIDE_RAD else 0.0
+        """Turn the laser after a target that comes near the edge of its field, no farther than needed: on the other side somebody may come, and the
+        stop filter lets the robot creep at most where nobody looks. Look ahead again when it is ahead."""
+        wanted_rad = math.copysign(abs(bearing_rad) - 0.5 * ASIDE_RAD, bearing_rad) if abs(bearing_rad) > ASIDE_RAD else 0.0
         if abs(wanted_rad - self._pan_rad) > WRIST_RAD and (wanted_rad != 0.0 or abs(bearing_rad) < 0.5 * ASIDE_RAD):
             self._turn_wrist(robot, wanted_rad)
 

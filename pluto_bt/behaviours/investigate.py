@@ -10,7 +10,8 @@ from py_trees.common import Status
 from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.robot import Robot, pose_doubt
+from pluto_bt.behaviours.reasons import WAITING
+from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.behaviours.standstill import Standstill
 from pluto_bt.behaviours.surroundings import Surroundings
 from pluto_bt.blackboard.codes import CommandType
@@ -47,8 +48,7 @@ class FindObject(RobotLeaf):
         """Answers at once."""
         around = robot.surroundings
         if not around.look(robot, self.now_s()):
-            doubt = pose_doubt(robot)
-            return self.fail(doubt.reason or "no-pose", doubt.text or "it is not known where the robot is")
+            return self.fail(*why_no_pose(robot))
         things = things_around(around.map, around.robot)
         inside = [thing for thing in things if self._fits(robot, around, thing)]
         for thing in inside:
@@ -90,17 +90,18 @@ class CircleObject(MotionLeaf):
     def begin(self, robot: Robot) -> Status | None:
         """Counter-clockwise first."""
         around = robot.surroundings
-        if not around.look(robot, self.now_s()) or around.object is None:
+        if around.object is None:
             return self.fail("no-object", "there is no object to circle: FindObject comes first")
         self._round, self._side = Round(), 1.0
         self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
         self._has_turned_back = False
         self._pointed_rad = math.inf
+        self._seen_s = self.now_s()
         return None
 
     def resume(self, robot: Robot) -> None:
         """The next step posts anyway."""
-        self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
+        self._sent_s, self._standstill, self._seen_s = -math.inf, Standstill(self.now_s()), self.now_s()
 
     def follow(self, robot: Robot) -> Status:
         """One step along the circle."""
@@ -110,7 +111,11 @@ class CircleObject(MotionLeaf):
         if trouble is not None or seen is None:
             return trouble or self.fail("no-object", "the object is forgotten")
         if not around.look(robot, now_s):
-            return self.wait("no pose")
+            if now_s - self._seen_s >= WAITING["no-pose"]:
+                return self.fail(*why_no_pose(robot))
+            self.post(robot, CommandType.VELOCITY)
+            return self.wait(why_no_pose(robot)[1])
+        self._seen_s = now_s
         for view in around.views:
             seen.see(view)
         turns = self._round.go(around.robot, seen.thing)

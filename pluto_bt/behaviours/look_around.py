@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from typing import ClassVar, Final
+from typing import ClassVar, Final, NamedTuple
 
 from py_trees.common import Status
 
@@ -24,7 +24,25 @@ STILL_MPS, STILL_RADPS = 0.02, 0.03
 HOLD_S: Final = 1.0
 AMONG_PEOPLE_S: Final = 10.0  # so long after the stop filter held for a walker, a sweep leaves the sides alone …
 LOOKS_AHEAD: Final = 5  # … and looks ahead so many times for each look down
-AHEAD: Final = (0.0, 0.0)
+SLOW_DPS: Final = 8.0  # what lies low is met by the plane of the laser only between its height over the ground and the ground …
+NEAREST_DEG: Final = 28.0  # who stands and looks to both sides may not know the ground before his feet
+NEAR: Final = 1.4  # … so a look at the ground begins so many times as far down, and rises slowly over all of it
+
+
+class Look(NamedTuple):
+    """Where the laser is pointed, and how fast it goes there."""
+
+    pan_rad: float
+    tilt_rad: float
+    rate_dps: float = RATE_DPS
+
+
+AHEAD: Final = Look(0.0, 0.0)
+
+
+def ground(tilt_rad: float, steepest_rad: float) -> list[Look]:
+    """A look over the ground ahead, from near to as far as `tilt_rad` meets it; none where that is 0."""
+    return [Look(0.0, steepest_rad), Look(0.0, tilt_rad, SLOW_DPS)] if tilt_rad > 0.0 else []
 
 
 class WristTour(RobotLeaf):
@@ -37,8 +55,8 @@ class WristTour(RobotLeaf):
         self._has_pointed = False
 
     @abstractmethod
-    def targets(self) -> list[Pair]:
-        """(pan, tilt) in radians, one after the other."""
+    def targets(self) -> list[Look]:
+        """One after the other."""
 
     def go_on(self, robot: Robot) -> bool:
         """Go on with the tour; True when it is over."""
@@ -60,19 +78,19 @@ class WristTour(RobotLeaf):
 
     def _is_seen(self, robot: Robot, now_s: float) -> bool:
         state, scan = robot.newest("wrist/state"), robot.newest("sick/scan")
-        target = self._targets[self._next]
-        at = state.position if isinstance(state, ActuatorState) else AHEAD  # without a wrist the laser always looks ahead
+        target: Pair = self._targets[self._next][:2]
+        at: Pair = state.position if isinstance(state, ActuatorState) else AHEAD[:2]  # without a wrist the laser always looks ahead
         is_there = max(abs(at[i] - target[i]) for i in (0, 1)) < THERE_RAD
         if is_there and self._there_s == math.inf:
             self._there_s = now_s
         return (isinstance(scan, LaserScan) and scan.stamp_s >= self._there_s) or now_s - self._since_s > PATIENCE_S
 
-    def _point(self, robot: Robot, target: Pair) -> None:
+    def _point(self, robot: Robot, look: Look) -> None:
         wrist = robot.platform.devices.wrist
         if wrist is not None:
             self._has_pointed = True
-            rate_dps, acceleration_dps2 = min(RATE_DPS, wrist.max_rate_dps), min(ACCELERATION_DPS2, wrist.max_acceleration_dps2)
-            robot.point_wrist(*target, math.radians(rate_dps), math.radians(acceleration_dps2))
+            rate_dps, acceleration_dps2 = min(look.rate_dps, wrist.max_rate_dps), min(ACCELERATION_DPS2, wrist.max_acceleration_dps2)
+            robot.point_wrist(look.pan_rad, look.tilt_rad, math.radians(rate_dps), math.radians(acceleration_dps2))
 
 
 class LookAround(WristTour):
@@ -90,7 +108,7 @@ class LookAround(WristTour):
         super().initialise()
         self._held_s = -math.inf
 
-    def targets(self) -> list[Pair]:
+    def targets(self) -> list[Look]:
         """The sides, the ground, and ahead."""
         wrist = self.robot.platform.devices.wrist if self.robot is not None else None
         if wrist is None or self.get_input("side") == "none":
@@ -98,8 +116,9 @@ class LookAround(WristTour):
         pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
         side = self.get_input("side")
-        panned = [(angle, 0.0) for angle, word in ((pan, "left"), (-pan, "right")) if side in (word, "both")]
-        return [*panned, (0.0, tilt), AHEAD]
+        panned = [Look(angle, 0.0) for angle, word in ((pan, "left"), (-pan, "right")) if side in (word, "both")]
+        nearest = math.radians(min(NEAREST_DEG, wrist.tilt_limit_deg)) if side == "both" else NEAR * tilt
+        return [*panned, *ground(tilt, max(tilt, nearest)), AHEAD]
 
     def act(self, robot: Robot) -> Status:
         """Stand, look, done."""
@@ -138,17 +157,17 @@ class SweepWrist(WristTour):
         self._rounds, self._walker_s = 0, -math.inf
         super().initialise()
 
-    def targets(self) -> list[Pair]:
+    def targets(self) -> list[Look]:
         """Left, down, right, down, as far as each is asked for; among people down, and ahead for a while."""
         wrist = self.robot.platform.devices.wrist if self.robot is not None else None
         if wrist is None:
             return []
         pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
-        down = [(0.0, tilt)] if tilt > 0.0 else []
+        down = ground(tilt, min(NEAR * tilt, math.radians(wrist.tilt_limit_deg)))
         if self.now_s() - self._walker_s < AMONG_PEOPLE_S:
             return [*down, *[AHEAD] * LOOKS_AHEAD]
-        return [(pan, 0.0), *down, (-pan, 0.0), *down] if pan > 0.0 else [*down, AHEAD]
+        return [Look(pan, 0.0), *down, Look(-pan, 0.0), *down] if pan > 0.0 else [*down, AHEAD]
 
     def act(self, robot: Robot) -> Status:
         """One round after the other."""

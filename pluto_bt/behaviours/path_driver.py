@@ -11,7 +11,7 @@ from py_trees.common import Status
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
 from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.blackboard.codes import CommandType, GotoStatus, LinkStatus
 from pluto_bt.blackboard.messages import FVectorState
 from pluto_bt.skills.outline import Planar
@@ -63,7 +63,7 @@ class PathDriver(MotionLeaf):
             self._blind_since_s = self._last_s
             return around.believed
         if self._last_s - self._blind_since_s >= WAITING["no-pose"]:
-            return self.fail("no-pose", "it is not known where the robot is")
+            return self.fail(*why_no_pose(robot))
         if self._moves:
             self.post(robot, CommandType.VELOCITY)
             self._point = None

@@ -13,12 +13,11 @@ from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot, pose_doubt
+from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.behaviours.surroundings import MOST_BLOCKED, Surroundings
 from pluto_bt.blackboard.codes import CommandType, GotoStatus
 from pluto_bt.blackboard.messages import FVectorState, Pair
 from pluto_bt.skills import ray_following as ray
-from pluto_bt.skills.outline import outline_of
 from pluto_bt.skills.ray_following import RayFollowing
 from pluto_bt.skills.rays import is_open
 from pluto_bt.skills.ways import Way
@@ -31,8 +30,6 @@ REFRESH_S: Final = 2.0
 AGAIN_S: Final = 1.0  # while somebody is in the way, a path is looked for so often
 PATIENCE_S: Final = 5.0  # then the robot goes nearer, and sees them better
 PEOPLE: Final = "every way is blocked, and somebody is about who will walk on: waiting"
-SHUT_M: Final = 0.5  # how much of the ground is marked where the robot could not go on …
-SHUT_AHEAD_M: Final = 0.3  # … so far before its front
 GOAL: Final = {"goal": Port(tuple[float, float], False, "where to; without it: to the nearest ground that is not explored yet", unit="m")}
 
 
@@ -96,9 +93,8 @@ class FindPath(RobotLeaf):
         return self._tell(around, goal)
 
     def _wait_for_a_pose(self, robot: Robot, now_s: float) -> Status:
-        doubt = pose_doubt(robot)
-        text, is_over = doubt.text or "it is not known where the robot is", now_s - self._start_s >= WAITING["no-pose"]
-        return self.fail(doubt.reason or "no-pose", text) if is_over else self.wait(text)
+        reason, text = why_no_pose(robot)
+        return self.fail(reason, text) if now_s - self._start_s >= WAITING["no-pose"] else self.wait(text)
 
     def _awaits_somebody(self, around: Surroundings, goal: Pair, now_s: float) -> bool:
         """Where no way is left: True while somebody in it may walk on. After `PATIENCE_S` the robot takes the way up to him, if there is one."""
@@ -170,7 +166,7 @@ class FollowRay(MotionLeaf):
         speed_mps = status.data[0] if status is not None else 0.0
         advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)
         if advice.kind == ray.GO and status is not None and status.element[1] == GotoStatus.STUCK:
-            advice = ray.Advice(ray.BLOCKED, self._ahead(robot, around), text=status.text)
+            advice = ray.Advice(ray.BLOCKED, text=status.text)
         return self._carry_out(robot, around, advice, status)
 
     def _carry_out(self, robot: Robot, around: Surroundings, advice: ray.Advice, status: FVectorState | None) -> Status:
@@ -207,7 +203,7 @@ class FollowRay(MotionLeaf):
 
     def _blocked(self, robot: Robot, around: Surroundings, advice: ray.Advice) -> Status:
         """Remember the place, and come away from it before anything is decided."""
-        around.map.shut(*self._ahead(robot, around), SHUT_M, self.now_s())
+        around.shut_ahead(self.now_s())
         around.blocked += 1
         if around.blocked >= MOST_BLOCKED:
             return self.fail("stuck", advice.text)
@@ -221,12 +217,6 @@ class FollowRay(MotionLeaf):
         if self._ticket is None or self._ticket.command.velocity != (speed_mps, 0.0):
             self.post(robot, CommandType.VELOCITY, velocity=(speed_mps, 0.0))
         return self.wait("coming away from where it was blocked")
-
-    def _ahead(self, robot: Robot, around: Surroundings) -> Pair:
-        """What is in the way of a robot that cannot go on."""
-        x, y, theta = around.robot
-        distance_m = outline_of(robot.platform.body.outline_m).front_m + SHUT_AHEAD_M
-        return x + distance_m * math.cos(theta), y + distance_m * math.sin(theta)
 
     def _decide(self, side: str, text: str, near: bool = False) -> Status:
         self._set_output("near", near)

@@ -14,7 +14,7 @@ from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.skills.outline import Planar
 
 GOAL: Final = Port(Destination, True, "where to", unit="m")
@@ -49,7 +49,7 @@ class Planning(RobotLeaf):
         if robot.surroundings.look(robot, self.now_s()):
             return self.plan(robot)
         is_over = self.now_s() - self._start_s >= WAITING["no-pose"]
-        return self.fail("no-pose", "it is not known where the robot is") if is_over else self.wait("waiting for a pose")
+        return self.fail(*why_no_pose(robot)) if is_over else self.wait("waiting for a pose")
 
     def found_place(self, port: str, robot: Robot) -> Destination | None:
         """The place that a port names, as it lies on the map; None if the port has none. Raises LookupError for a name the map does not know."""

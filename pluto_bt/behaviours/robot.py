@@ -117,6 +117,12 @@ def pose_doubt(robot: Robot) -> FVectorState:
     return check if isinstance(check, FVectorState) and check.reason in (reasons.LOST, reasons.NO_POSE) else NO_DOUBT
 
 
+def why_no_pose(robot: Robot) -> tuple[str, str]:
+    """Word and sentence for a leaf that has no pose to go by: `lost` where somebody carried the robot off, else `no-pose`."""
+    doubt = pose_doubt(robot)
+    return doubt.reason or reasons.NO_POSE, doubt.text or "it is not known where the robot is"
+
+
 def pose_of(robot: Robot) -> tuple[float, float, float] | None:
     """(x m, y m, theta rad) of `Localization/Pose`, or None if it is missing, too old to trust, or not to be believed (`pose_doubt`)."""
     pose = robot.newest("Localization/Pose")

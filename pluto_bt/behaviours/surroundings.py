@@ -13,6 +13,7 @@ import msgspec
 from pluto_bt.behaviours.robot import Robot, pose_of
 from pluto_bt.blackboard.messages import ActuatorState, BumperState, FVectorState, LaserScan, Pair, Pose
 from pluto_bt.maps.platform import Platform
+from pluto_bt.skills import walked_ground
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
 from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
@@ -27,7 +28,8 @@ from pluto_bt.skills.ways import Way, Ways
 
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
 FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
-FEET_S = 6.0  # what looks down has to see a low thing twice in so long
+FEET_S, AGAIN_S = 6.0, 0.4  # where somebody walked so lately a low thing has to be seen twice: who walks has gone on by then
+SHUT_AHEAD_M, SHUT_M = 0.3, 0.5  # so far before its front, and so much around there, is shut where the robot could not go on
 MOST_DOUBT_M = 0.6  # with more doubt the ground along the edges would be given up
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
@@ -43,6 +45,8 @@ class Surroundings:
         self.rectangle: Rectangle | None = None  # in Localization/Pose
         self.fine: LocalMap | None = None  # the same on smaller cells, for who passes through doors; kept once `look_finely` was called
         self._laser = platform.devices.laser
+        self._front_m = outline_of(platform.body.outline_m).front_m
+        self._has_run_into = False
         self._is_empty = True
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
@@ -64,7 +68,7 @@ class Surroundings:
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
         self.object: SeenObject | None = None
         if not goes_on:
-            self.map.covered[:] = 0
+            self.map.uncover()
             self.openings = Openings(self.map)
 
     def tune(self, parameters: MotionParameters) -> None:
@@ -74,15 +78,14 @@ class Surroundings:
     def warm(self) -> None:
         """Use every kernel once, so that no later use waits for its compilation. For a memory that is then thrown away."""
         self.map.warm()
+        walked_ground.warm()
         self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
 
     def look_finely(self, cell_m: float) -> None:
         """Keep the fine map too from now on."""
         if self.fine is None:
             fine = {"path_half_width_m": CELLS_OF_A_PATH * cell_m, "wide_half_width_m": FINE_ROOM_M, "look_m": FINE_LOOK_M, "join_m": FINE_JOIN_M}
-            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine))
-            if not self._is_empty:
-                self.fine.forget(self.robot)
+            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine), self.robot)
 
     def forget(self) -> None:
         """What was seen is not known any more; what was explored is."""
@@ -118,14 +121,18 @@ class Surroundings:
         self._doubt_m = min(MOST_DOUBT_M, 2.0 * math.sqrt(variance_m2 - self._first_variance_m2))
         if self._is_empty:
             for grid in self._grids():
-                grid.forget(self.robot)
+                grid.lay(self.robot)
             self._is_empty = False
         self.map.visit(*self.robot[:2])
         self.views = tuple(robot.scan_views())
+        if self._has_run_into and not self.await_passers_by(now_s) and not self.sees_walkers(now_s):
+            self.shut_ahead(now_s)
+        self._has_run_into = False
         for view in self.views:
             if view.laser is not None and self._laser is not None:
+                again_s = AGAIN_S if len(self._walked.places(view.scan.stamp_s, FEET_S)) else 0.0
                 for grid in self._grids():
-                    grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad)
+                    grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, again_s)
                 self._note_walkers(view.scan, view.laser, view.tilt_rad)
         if now_s - self._refreshed_s >= REFRESH_S:
             self._refreshed_s = now_s
@@ -143,10 +150,15 @@ class Surroundings:
 
     def _watch_passers_by(self, robot: Robot, now_s: float) -> None:
         held, raw, bumper = robot.newest("filter/status"), robot.newest("ATRV2/Drive/Raw"), robot.newest("ATRV2/Bumper")
-        self._passers_by.note(
+        self._has_run_into |= self._passers_by.note(
             now_s, held if isinstance(held, FVectorState) else None, raw if isinstance(raw, ActuatorState) else None,
             bumper if isinstance(bumper, BumperState) else None,
         )  # fmt: skip
+
+    def shut_ahead(self, now_s: float) -> None:
+        """Something that no scan shows is in the way of the robot, close before its front."""
+        (x, y, theta), away_m = self.robot, self._front_m + SHUT_AHEAD_M
+        self.map.shut(x + away_m * math.cos(theta), y + away_m * math.sin(theta), SHUT_M, now_s)
 
     def await_passers_by(self, now_s: float) -> bool:
         """True while somebody is about who will walk on: what is blocked is blocked for a while."""

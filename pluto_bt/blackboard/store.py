@@ -32,10 +32,10 @@ class TopicError(PlutoError):
 class Publisher:
     """The one right to write a topic."""
 
-    __slots__ = ("_index", "_name", "_type", "_write")
+    __slots__ = ("_board", "_index", "_name", "_type")
 
     def __init__(self, board: Blackboard, index: int, topic: Topic) -> None:
-        self._write = board._write
+        self._board = board
         self._index = index
         self._name = topic.name
         self._type = topic.type
@@ -44,7 +44,16 @@ class Publisher:
         """Make `value` the newest one and wake whoever waits for the topic."""
         if type(value) is not self._type:
             raise TopicError(f"{self._name} carries {self._type.__name__}, not {type(value).__name__}")
-        self._write(self._index, value, now_s)
+        board, index = self._board, self._index
+        with board._lock:
+            last, kept = board._newest[index], board._history[index]
+            sample = board._newest[index] = Sample(value, 1 if last is None else last.seq + 1, now_s)
+            if kept is not None:
+                kept.append(sample)
+            if board._tap is not None:
+                board._tap(index, sample)
+        for wake in board._watchers[index]:
+            wake()
 
 
 def enclosing(samples: tuple[Sample, ...], stamp_s: float) -> tuple[Sample, Sample] | None:
@@ -81,7 +90,10 @@ class Snapshot:
     def history(self, name: str) -> tuple[Sample, ...]:
         """The last samples up to that moment, oldest first, as many as the board still keeps."""
         newest = self.newest(name)
-        return () if newest is None else tuple(sample for sample in self._board.history(name) if sample.seq <= newest.seq)
+        if newest is None:
+            return ()
+        kept = self._board.history(name)
+        return kept if kept[-1] is newest else tuple(sample for sample in kept if sample.seq <= newest.seq)
 
     def around(self, name: str, stamp_s: float) -> tuple[Sample, Sample] | None:
         """The two samples whose stamps enclose `stamp_s`; None if it lies outside the history up to that moment."""
@@ -210,14 +222,3 @@ class Blackboard:
         index = self.index_of(name)
         with self._lock:
             self._watchers[index] = (*self._watchers[index], wake)
-
-    def _write(self, index: int, value: Message, now_s: float) -> None:
-        with self._lock:
-            last, kept = self._newest[index], self._history[index]
-            sample = self._newest[index] = Sample(value, 1 if last is None else last.seq + 1, now_s)
-            if kept is not None:
-                kept.append(sample)
-            if self._tap is not None:
-                self._tap(index, sample)
-        for wake in self._watchers[index]:
-            wake()

@@ -49,9 +49,10 @@ class Dmu(Relay[InertialRecord]):
 
     def step(self, now_s: float) -> None:
         """Publish each sample that has arrived, both ways."""
-        for record in self.read():
+        records = self.read()
+        is_still = bool(records) and self._is_still()
+        for record in records:
             x, y, z = record.turn_rates_radps
-            is_still = self._is_still()
             if not self.bias.known:
                 self._tell(self.bias.add(z, is_still))
             bias = self.bias.bias_radps if self._rest is None else self._rest.bias_radps

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from estimation.motion_check import MotionCheck
 from estimation.news import FOUND, LOST, WHEELS_GRIP
 from estimation.track import Moment
@@ -10,7 +12,7 @@ from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import Arm
 from pluto_bt.modules.tilted_laser import LEVEL_RAD, TiltedLaser
 from pluto_bt.skills.reasons import NO_POSE
-from pluto_bt.skills.scan_watch import are_same
+from pluto_bt.skills.scan_watch import RETURNS, are_same
 
 FINE = (1.0, 0.0, True, False, False)
 AGREED, CORRECTED, IS_LOST = 0, 1, 2  # element[0] of the topic
@@ -24,6 +26,8 @@ class MotionCheckShown:
     def __init__(self, context: Context, check: MotionCheck) -> None:
         self._check, self._say = check, context.say
         self._scan = context.board.reader("sick/scan")
+        laser = context.platform.devices.laser
+        self._max_range_m = laser.max_range_m if laser is not None else 0.0
         self._topic = context.board.publisher("Localization/Check", "local")
         self._word = self._text = self._lost_text = ""
         self._pan_rad = 0.0
@@ -38,7 +42,7 @@ class MotionCheckShown:
             return
         self._tilted.look(arm.tilt_rad, then.pose_odom)
         scan, last, self._ranges_m = sample.value, self._ranges_m, sample.value.ranges_m
-        if last is not None and _has_equal_half(last, scan.ranges_m):
+        if last is not None and _has_equal_half(last, scan.ranges_m, self._max_range_m):
             return  # a laser that repeats itself is no witness
         panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
         if max(abs(arm.tilt_rad), abs(then.tilt[0]), abs(then.tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
@@ -75,7 +79,10 @@ class MotionCheckShown:
         self._topic.put(FVectorState(now_s, (state[0], state[1], check.fits), (code,), word, text), now_s)
 
 
-def _has_equal_half(before: FloatArray, now: FloatArray) -> bool:
-    """True if the beams of one side are exactly those of the scan before."""
+def _has_equal_half(before: FloatArray, now: FloatArray, max_range_m: float) -> bool:
+    """True if the beams of one side are exactly those of the scan before, and not because nothing stands there."""
     half = len(now) // 2
-    return len(before) == len(now) and (are_same(before[:half], now[:half]) or are_same(before[half:], now[half:]))
+    if len(before) != len(now):
+        return False
+    sides = (slice(None, half), slice(half, None))
+    return any(are_same(before[side], now[side]) and np.count_nonzero(now[side] < max_range_m) >= RETURNS for side in sides)

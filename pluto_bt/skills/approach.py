@@ -44,20 +44,16 @@ class Approach:
         Returns: (n, 4) x m, y m, how far beside that, and PERHAPS, WALKS or SURELY, for each transducer that hears somebody come or go. What
             changes while the robot stands, no motion of its own can explain: that is sure.
         """
-        ranges_m = self._without_losses(ranges_m)
-        self._rounds = [*self._rounds[1 - ROUNDS :], (ranges_m, robot, stamp_s)]
-        first_m, _, first_s = self._rounds[0]
-        if len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
+        before_m = self._rounds[-1][0] if self._rounds else ranges_m
+        kept = self._rounds[1 - ROUNDS :]
+        first_m, _, first_s = kept[0] if kept else (ranges_m, robot, stamp_s)
+        ranges_m, near, is_anything = heard_anew(
+            ranges_m, before_m, first_m, self._lost, news, self._ring.max_range_m, self._ring.min_range_m, self._is_alone
+        )
+        self._rounds = [*kept, (ranges_m, robot, stamp_s)]
+        if not is_anything or len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
-        nearer_m = np.abs(first_m - ranges_m) if self._is_alone else first_m - ranges_m
-        near = (ranges_m < HEAR_M) & (nearer_m > NEARER_M) & (ranges_m > self._ring.min_range_m)
-        return self._those_who_walk(near, news) if near.any() or (news >= CAME).any() else NOTHING
-
-    def _without_losses(self, ranges_m: Array) -> Array:
-        """The echoes, the last ones where they have only just stopped coming."""
-        is_silent = ranges_m >= self._ring.max_range_m
-        self._lost = np.where(is_silent, self._lost + 1, 0)
-        return np.where(is_silent & (self._lost <= MOST_LOST), self._rounds[-1][0], ranges_m) if self._rounds else ranges_m
+        return self._those_who_walk(near, news)
 
     def _those_who_walk(self, near: Mask, news: Counts) -> Array:
         """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came.
@@ -84,6 +80,32 @@ class Approach:
         is_sure = math.dist(places[0, :2], places[-1, :2]) + ranges_m * swept_rad < STANDING_M
         how = np.where(moved[which] == PERHAPS, PERHAPS, np.where(is_sure, SURELY, WALKS))
         return np.column_stack((apex_x + ranges_m * np.cos(axis_rad), apex_y + ranges_m * np.sin(axis_rad), ranges_m * math.sin(half_rad), how))
+
+
+@kernel
+def heard_anew(
+    ranges_m: Array, before_m: Array, first_m: Array, lost: Counts, news: Counts, most_m: float, least_m: float, is_alone: bool
+) -> tuple[Array, Mask, bool]:
+    """A round as it counts, and what in it may be somebody.
+
+    Args:
+        ranges_m, before_m, first_m: (k,) this round, the one before, and the first of those that are compared.
+        lost: (k,) rounds in a row without an echo, brought up to date. news: (k,) as `SeenSpace.add_echoes` says.
+        most_m, least_m: farthest and nearest that a transducer can tell.
+    Returns: (k,) each: the echoes, the last ones where they have only just stopped coming; who is near and has come or gone; and whether there is
+        anybody at all of these, or an echo that came or is near all of a sudden.
+    """
+    n = ranges_m.shape[0]
+    heard_m, is_anything = ranges_m.copy(), False
+    near = np.zeros(n, dtype=np.bool_)
+    for k in range(n):
+        lost[k] = lost[k] + 1 if ranges_m[k] >= most_m else 0
+        if 0 < lost[k] <= MOST_LOST:
+            heard_m[k] = before_m[k]
+        nearer_m = first_m[k] - heard_m[k]
+        near[k] = least_m < heard_m[k] < HEAR_M and (abs(nearer_m) if is_alone else nearer_m) > NEARER_M
+        is_anything = is_anything or near[k] or news[k] >= CAME
+    return heard_m, near, is_anything
 
 
 @kernel

@@ -128,8 +128,8 @@ class _Ear:
         if sonar is None or sonar is self._heard or at is None:
             return
         self._heard = sonar
-        ranges_m = np.array(sonar.ranges_m)
-        if ranges_m.shape != (self._ring.count,) or not np.isfinite(ranges_m).all() or now_s - sonar.stamp_s > self._stale_s:
+        ranges_m = self._ring.readings(sonar.ranges_m)
+        if ranges_m is None or now_s - sonar.stamp_s > self._stale_s:
             self._heard = None
             space.drop_echoes()
             return

@@ -13,10 +13,12 @@ import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
-from pluto_bt.skills.map_kernels import Bytes, Counts, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
+from pluto_bt.skills.grid_shift import shift
+from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
+from pluto_bt.skills.window import Window
 
 CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
@@ -35,7 +37,7 @@ class Cell(NamedTuple):
 class LocalMap:
     """The grid. `clearance` (cells) is kept up to date by `refresh`; `low_s` is when something low was seen, `NEVER_S` = never."""
 
-    def __init__(self, parameters: MotionParameters) -> None:
+    def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0)) -> None:
         self.parameters = parameters
         self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
@@ -43,20 +45,26 @@ class LocalMap:
         n = math.ceil(HERE_M / self.cell_m)
         self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
         self._fan = Fan()
-        self.forget((0.0, 0.0, 0.0))
+        self.forget(middle)
 
     def forget(self, middle: Planar) -> None:
         """Nothing is known; the middle of the grid is here."""
         self.evidence: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self.covered: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
+        self._visited: Cell | None = None  # the robot is here, and that is marked
         self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
-        self._touched: Counts = np.zeros((CELLS, CELLS), dtype=np.int32)
+        self._touched: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
         self._shut: list[tuple[float, float, float, float]] = []  # x m, y m, radius m, when
-        self._window: tuple[float, float, float, float] | None = None  # where something changed since the last refresh, in cells
+        self._window: Window | None = None  # where something changed since the last refresh
+        self._has_low = False  # something was found to lie low, which is forgotten by itself wherever it is
+        self.lay(middle)
+
+    def lay(self, middle: Planar) -> None:
+        """Put the middle of a grid in which nothing is known here."""
         self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
 
     # ------------------------------------------------------------------ places
@@ -103,32 +111,44 @@ class LocalMap:
 
     # ------------------------------------------------------------------ seeing
 
-    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float) -> None:
+    def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float, again_s: float = 0.0) -> None:
         """Take a scan.
 
         Args:
             laser: where it was taken from, in the frame of dead reckoning; the yaw includes the wrist's pan.
             height_m, tilt_rad: of the laser above the ground, and how far it looked down.
+            again_s: what lies low counts when it has been seen in one place for so long.
         """
         self._follow(laser)
         angles, _, _ = self._fan.beams(scan.angle_min_rad, scan.angle_step_rad, len(scan.ranges_m))
         x, y = self.place(laser[0], laser[1])
         cell = self.cell_m
         if abs(tilt_rad) < LEVEL_RAD:
-            self._scans += 1
+            self._scans = self._scans % MOST_NUMBER + 1
+            if self._scans == 1:
+                self._touched[:] = 0  # the numbers of the round before come again
             p = self.parameters
-            mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell, self.look_m / cell,
-                       p.coverage_m / cell, p.join_m / cell)  # fmt: skip
-            self._changed(x, y, self.look_m)
+            touched = mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell,
+                                 self.look_m / cell, p.coverage_m / cell, p.join_m / cell)  # fmt: skip
+            self._changed(Window.around(x, y, self.look_m / cell) if self._has_low else Window(*touched))
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
             mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
-                        self.parameters.ground_step_m, scan.stamp_s)  # fmt: skip
-            self._changed(x, y, reach_m)
+                        self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
+            self._has_low = True
+            self._changed(Window.around(x, y, reach_m / cell))
+
+    def uncover(self) -> None:
+        """Nothing is covered any more."""
+        self.covered[:] = 0
+        self._visited = None
 
     def visit(self, x_m: float, y_m: float) -> None:
         """The robot is here."""
-        i, j = self.cell(x_m, y_m)
+        i, j = here = self.cell(x_m, y_m)
+        if here == self._visited:
+            return
+        self._visited = here
         n = self._here.shape[0] // 2
         if n <= i < CELLS - n and n <= j < CELLS - n:
             self.covered[i - n : i + n + 1, j - n : j + n + 1] |= self._here
@@ -148,7 +168,7 @@ class LocalMap:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
         self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
         self._shut.append((x_m, y_m, radius_m, now_s))
-        self._changed(*self.place(x_m, y_m), radius_m)
+        self._shuts(x_m, y_m, radius_m)
 
     def reopen(self) -> bool:
         """Forget what was shut, but for what has been seen to lie low there since. False if nothing was shut."""
@@ -157,8 +177,13 @@ class LocalMap:
             i, j = self._disc(x_m, y_m, radius_m)
             is_same = self.low_s[i, j] == np.float32(shut_s)
             self.low_s[i[is_same], j[is_same]] = NEVER_S
-            self._changed(*self.place(x_m, y_m), radius_m)
+            self._shuts(x_m, y_m, radius_m)
         return bool(shut)
+
+    def _shuts(self, x_m: float, y_m: float, radius_m: float) -> None:
+        """Something was shut or opened by hand in this disc."""
+        self._has_low = True
+        self._changed(Window.around(*self.place(x_m, y_m), radius_m / self.cell_m))
 
     def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
         """What is here cannot be explored any better: it counts as covered."""
@@ -184,22 +209,17 @@ class LocalMap:
             else:
                 grid[:] = blank
                 grid[square] = kept
-        self._changed(i, j, side_m if inside else CELLS * self.cell_m)
+        self._changed(Window.around(i, j, side_m / self.cell_m if inside else CELLS))
 
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
         if self._window is None:
             return
-        keep = math.ceil(self.far_cells)
-        low_i, low_j, high_i, high_j = self._window
-        i0, j0 = max(0, math.floor(low_i) - 2 * keep), max(0, math.floor(low_j) - 2 * keep)
-        i1, j1 = min(CELLS, math.ceil(high_i) + 2 * keep), min(CELLS, math.ceil(high_j) + 2 * keep)
-        self._window = None
-        oldest_s = self._oldest_s(now_s)
-        i0, i1, j0, j1 = changes(self.evidence, self.low_s, oldest_s, self._stands, i0, i1, j0, j1)
-        if i0 < i1:  # mostly a few cells, or none
-            i0, i1, j0, j1 = max(0, i0 - 2 * keep), min(CELLS, i1 + 2 * keep), max(0, j0 - 2 * keep), min(CELLS, j1 + 2 * keep)
-            clearances(self.evidence, self.low_s, oldest_s, i0, i1, j0, j1, self.clearance, keep, self.far_cells)
+        keep, oldest_s = math.ceil(self.far_cells), self._oldest_s(now_s)
+        window, self._window = self._window.grown(2 * keep if self._has_low else 0, CELLS), None
+        changed = Window(*changes(self.evidence, self.low_s, oldest_s, self._stands, *window))
+        if changed.i0 < changed.i1:  # mostly a few cells, or none
+            clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self.clearance, keep, self.far_cells)
 
     def without_walkers(self, places: Array, now_s: float) -> tuple[Bytes, Floats]:
         """Evidence and clearances as if nothing stood at and beside `places` (n, 2), where somebody walked."""
@@ -221,11 +241,8 @@ class LocalMap:
         """What was seen to lie low before is not known any more."""
         return max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
 
-    def _changed(self, i: float, j: float, reach_m: float) -> None:
-        reach = reach_m / self.cell_m
-        window = (i - reach, j - reach, i + reach, j + reach)
-        old = self._window
-        self._window = window if old is None else (min(old[0], window[0]), min(old[1], window[1]), max(old[2], window[2]), max(old[3], window[3]))
+    def _changed(self, window: Window) -> None:
+        self._window = window.joined(self._window)
 
     def _follow(self, robot: Planar) -> None:
         """Move the grid along when the robot comes within a quarter of its edge; what falls off is forgotten."""
@@ -237,15 +254,7 @@ class LocalMap:
             return
         for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
                             (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
-            _shift(grid, shift_i, shift_j, blank)
+            shift(grid, shift_i, shift_j, blank)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
-        self._window = None
-
-
-def _shift(grid: np.ndarray[tuple[int, ...], np.dtype[np.generic]], di: int, dj: int, blank: float) -> None:
-    """Move the contents by (-di, -dj) cells and fill with `blank`."""
-    old = grid.copy()
-    grid[:] = blank
-    n = grid.shape[0]
-    if abs(di) < n and abs(dj) < n:
-        grid[max(0, -di) : n - max(0, di), max(0, -dj) : n - max(0, dj)] = old[max(0, di) : n - max(0, -di), max(0, dj) : n - max(0, -dj)]
+        self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
+        self._visited = None

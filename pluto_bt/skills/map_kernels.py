@@ -1,7 +1,7 @@
 """The hot loops of the local map. Grids are (n, n), first index x, second index y; cell (i, j) covers [i, i + 1) x [j, j + 1) cells.
 
 `evidence` > 0 = something stands there, < 0 = seen free, 0 = not known. `touched` holds the number of the scan that last changed a cell, so
-that one scan changes each cell once and a hit outweighs the many beams that graze past it.
+that one scan changes each cell once and a hit outweighs the many beams that graze past it; one byte a cell, for memory is what takes the time.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ Floats = NDArray[np.float32]
 
 HIT, MISS = 3, 2  # a wall outlives the drop-outs of single beams, somebody who walked on is gone after a second
 MOST, LEAST = 6, -4
+MOST_NUMBER = 127  # of a scan, then they begin anew at 1
 LEVEL, STANDS, HOLE = 1, 2, 3  # what a beam that looks down may find
-AGAIN_S, FORGOTTEN_S = 0.4, 6.0  # what lies low has to be seen again in the same cell: who walks has gone on by then
+FORGOTTEN_S = 6.0  # what was seen to lie low before that is not known any more
 TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
 SAMPLE = 0.7  # cells between two samples of a beam
 ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middle of one to that of the next
@@ -29,23 +30,29 @@ ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middl
 
 @kernel
 def mark_level(
-    evidence: Bytes, covered: Bytes, touched: Counts, number: int, x: float, y: float, bearings: Array, ranges: Array, look: float, cover: float,
+    evidence: Bytes, covered: Bytes, touched: Bytes, number: int, x: float, y: float, bearings: Array, ranges: Array, look: float, cover: float,
     join: float,
-) -> None:  # fmt: skip
+) -> tuple[int, int, int, int]:  # fmt: skip
     """Enter a level scan taken at (x, y); all lengths in cells.
 
     Beams that end nearer than `look` are hits, and two neighbouring hits less than `join` apart are one wall. What beams pass is free, and
     nearer than `cover` it is also covered. Ranges that are not numbers or not positive say nothing; a single beam that runs on where both
     its neighbours end has lost its echo and is believed no farther than they are.
+
+    Returns: a window that holds all that may have changed, [i0, i1) x [j0, j1).
     """
     size = evidence.shape[0]
+    low_x, high_x, low_y, high_y = x, x, y, y
     last_x, last_y, has_last = 0.0, 0.0, False
+    cos, sin = np.zeros(ranges.shape[0]), np.zeros(ranges.shape[0])
     for k in range(ranges.shape[0]):
         r = ranges[k]
+        cos[k], sin[k] = math.cos(bearings[k]), math.sin(bearings[k])
         if not (0.0 < r < look):
             has_last = False
             continue
-        hit_x, hit_y = x + r * math.cos(bearings[k]), y + r * math.sin(bearings[k])
+        hit_x, hit_y = x + r * cos[k], y + r * sin[k]
+        low_x, high_x, low_y, high_y = min(low_x, hit_x), max(high_x, hit_x), min(low_y, hit_y), max(high_y, hit_y)
         steps = 1
         if has_last:
             gap = math.hypot(hit_x - last_x, hit_y - last_y)
@@ -66,7 +73,9 @@ def mark_level(
         if 0 < k < ranges.shape[0] - 1:
             r = min(r, max(ranges[k - 1], ranges[k + 1]) + join)
         count = max(0, int((min(r, look) - 1.0) / SAMPLE))
-        cells_along(places[:count], x, y, math.cos(bearings[k]), math.sin(bearings[k]), size)
+        end_x, end_y = x + SAMPLE * count * cos[k], y + SAMPLE * count * sin[k]
+        low_x, high_x, low_y, high_y = min(low_x, end_x), max(high_x, end_x), min(low_y, end_y), max(high_y, end_y)
+        cells_along(places[:count], x, y, cos[k], sin[k], size)
         for m in range(count):
             place = places[m]
             if place < 0:
@@ -76,6 +85,7 @@ def mark_level(
             if flat_touched[place] != number:
                 flat_touched[place] = number
                 flat_evidence[place] = max(LEAST, flat_evidence[place] - MISS)
+    return max(0, math.floor(low_x)), min(size, math.floor(high_x) + 1), max(0, math.floor(low_y)), min(size, math.floor(high_y) + 1)
 
 
 @inline_kernel
@@ -90,11 +100,11 @@ def cells_along(places: Counts, x: float, y: float, c: float, s: float, size: in
 @kernel
 def mark_ground(
     low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float,
-    height: float, look: float, step: float, now_s: float,
+    height: float, look: float, step: float, now_s: float, again_s: float,
 ) -> None:  # fmt: skip
     """Enter what a scan tilted down by `tilt` says of the ground into `low_s`: metres, (x, y) in cells.
 
-    Ends more than `step` above the ground are low obstacles, once they are seen again later (`first_s` = when first); a beam that runs on
+    Ends more than `step` above the ground are low obstacles, once they are seen again `again_s` later (`first_s` = when first); a beam that runs on
     more than `step` below the ground has found a hole, where it went through the ground; both only where the beam before says the same.
     Ground that is where it should be takes old marks away.
     """
@@ -122,7 +132,7 @@ def mark_ground(
             continue
         if verdict == LEVEL:
             low_s[i, j] = first_s[i, j] = -1.0
-        elif verdict == HOLE or AGAIN_S <= now_s - first_s[i, j] <= FORGOTTEN_S:
+        elif verdict == HOLE or again_s <= 0.0 or again_s <= now_s - first_s[i, j] <= FORGOTTEN_S:
             low_s[i, j] = now_s
         elif evidence[i, j] <= 0 and (first_s[i, j] < 0.0 or now_s - first_s[i, j] > FORGOTTEN_S):
             first_s[i, j] = now_s

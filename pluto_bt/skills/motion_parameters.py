@@ -26,7 +26,7 @@ class MotionParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     home_depth_m: Annotated[NotNegative, Meta(description="home lies on the edge: explore comes home to so far inside of it")] = 0.2
     opening_m: Annotated[Positive, Meta(description="a side that lies so much deeper than before is an opening")] = 4.0
     ground_look_m: Annotated[Positive, Meta(description="how far a scan that looks down is believed about the ground")] = 6.0
-    ground_step_m: Annotated[Positive, Meta(description="smallest step up or down that is an obstacle")] = 0.08
+    ground_step_m: Annotated[Positive, Meta(description="smallest step up or down that is an obstacle")] = 0.05
     ground_memory_s: Annotated[Positive, Meta(description="how long low obstacles and holes are remembered")] = 120.0
     coverage_m: Annotated[Positive, Meta(description="explore counts as explored what was seen from so near")] = 5.0
     largest_object_m: Annotated[Positive, Meta(description="what is larger is no object to investigate")] = 4.0

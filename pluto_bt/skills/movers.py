@@ -104,7 +104,8 @@ class _Pieces(NamedTuple):
 
 def _pieces(points: Array, beams: Beams, moved: Mask) -> _Pieces:
     """The pieces of the points of a scan, as `velocities` takes them; at least one."""
-    starts, is_narrow = apart(points[:, 0], points[:, 1], beams, moved)
+    x_m, y_m = points.T.copy()  # contiguous, however many: one signature to compile
+    starts, is_narrow = apart(x_m, y_m, beams, moved)
     sizes = np.diff(starts, append=len(points))
     return _Pieces(starts, sizes, np.add.reduceat(points, starts, axis=0) / sizes[:, None], is_narrow)
 
@@ -224,3 +225,8 @@ def leave_out_needles(moved: Mask, beam_last: Array) -> None:
 def beyond_m(end_m: float, next_m: float) -> float:
     """Where the beam beyond the last one on a grazed wall, `end_m`, would meet it; the one before the last ended at `next_m`."""
     return 2.0 * end_m - next_m if next_m - end_m < GRAZING_M else end_m
+
+
+def warm() -> None:
+    """Use the kernel once that only a place where somebody walks needs."""
+    _pieces(np.zeros((1, 2)), np.zeros(1, dtype=np.intp), np.zeros(1, dtype=np.bool_))

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.kernel import kernel
+from pluto_bt.skills import movers
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.lone_beams import believed_ends
@@ -182,6 +183,7 @@ def _seen_from(points: Array, x_m: float, y_m: float, theta_rad: float, now_s: f
 
 def warm() -> None:
     """Use the kernels once that an empty place does not need."""
+    movers.warm()
     here = (0.0, 0.0, 0.0)
     _outside_the_field(np.zeros((1, 6)), here, (0.0, 0.0), here, 1.0)
     _heard_through(np.zeros((1, 6)), np.zeros((1, 3)), np.zeros(1), 0.1, *here)

@@ -19,15 +19,18 @@ class PassersBy:
         self._seen_s = self._moved_s = -math.inf
         self._was_pressed = False
 
-    def note(self, now_s: float, held: FVectorState | None, raw: ActuatorState | None, bumper: BumperState | None) -> None:
-        """Take what the filter or drive says of its verdict, how the wheels turn, and what the bumpers feel; None = not known."""
+    def note(self, now_s: float, held: FVectorState | None, raw: ActuatorState | None, bumper: BumperState | None) -> bool:
+        """Take what the filter or drive says of its verdict, how the wheels turn, and what the bumpers feel; None = not known. True if the robot has
+        just run into something with its front."""
         if raw is not None and (abs(raw.velocity[0]) > MOVES_MPS or abs(raw.velocity[1]) > MOVES_RADPS):
             self._moved_s = now_s
+        stood = now_s - self._moved_s > STOOD_S
         is_pressed = bumper is not None and (bumper.front or bumper.back)
-        is_touched = is_pressed and not self._was_pressed and now_s - self._moved_s > STOOD_S
+        is_news = is_pressed and not self._was_pressed
         self._was_pressed = is_pressed
-        if is_touched or (held is not None and held.reason == reasons.WALKER):
+        if (is_news and stood) or (held is not None and held.reason == reasons.WALKER):
             self._seen_s = now_s
+        return is_news and not stood and bumper is not None and bumper.front
 
     def are_awaited(self, now_s: float) -> bool:
         """True if somebody was about lately."""

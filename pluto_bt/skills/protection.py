@@ -7,9 +7,11 @@ import math
 import numpy as np
 
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus
+from pluto_bt.maps.kernel import kernel
 from pluto_bt.skills import reasons
 from pluto_bt.skills.limits import STILL, Limits, Twist
 from pluto_bt.skills.outline import Array, Outline, Planar
+from pluto_bt.skills.seen_kernels import outside_m
 from pluto_bt.skills.sight import Sight
 from pluto_bt.skills.sonar import sonar_code, where_word
 from pluto_bt.skills.sweep import allowed_share, first_contact, horizon_s
@@ -60,22 +62,17 @@ class Protection:
             allowed = allowed_share(free_s, twist, self.limits, self._latency_s)
             if allowed < share:
                 share, verdict = allowed, self._seen(points, which)
-        if share > 0.0 and wanted != STILL and points[:, 3:].any():
-            which = self._who_is_inside(points)
-            if which >= 0:
-                return 0.0, self._seen(points, which)
+        if share <= 0.0 or wanted == STILL:
+            return share, verdict
+        is_anybody, which = who_is_inside(points, self._outline.planes)
+        if which >= 0:  # he is let out before the robot moves on
+            return 0.0, self._seen(points, which)
+        if is_anybody:
             within_s = AWAIT_S + horizon_s(now, self.limits, self._latency_s)
             _, which = first_contact(points, self._outline.planes, 0.0, 0.0, within_s)
             if which >= 0:
                 return 0.0, self._seen(points, which)
         return share, verdict
-
-    def _who_is_inside(self, points: Array) -> int:
-        """A point of somebody who walked into the standing robot, -1 if there is none: he is let out before it moves on."""
-        walking = np.flatnonzero(points[:, 3:].any(axis=1))
-        planes = self._outline.planes
-        inside = (points[walking, :2] @ planes[:, :2].T < planes[:, 2]).all(axis=1)
-        return int(walking[inside][0]) if inside.any() else -1
 
     def _seen(self, points: Array, which: int) -> Verdict:
         x_m, y_m = points[which, :2].tolist()
@@ -87,3 +84,15 @@ class Protection:
 
 def _differs(a: Twist, b: Twist) -> bool:
     return abs(a[0] - b[0]) > 0.1 or abs(a[1] - b[1]) > 0.15 or not math.isclose(math.copysign(1.0, a[0]), math.copysign(1.0, b[0]))
+
+
+@kernel
+def who_is_inside(points: Array, planes: Array) -> tuple[bool, int]:
+    """Whether any of the points (n, 5) walks; and the first one that has walked into the outline, -1 if there is none."""
+    is_anybody, which = False, -1
+    for i in range(points.shape[0]):
+        if points[i, 3] != 0.0 or points[i, 4] != 0.0:
+            is_anybody = True
+            if which < 0 and outside_m(planes, points[i, 0], points[i, 1]) < 0.0:
+                which = i
+    return is_anybody, which

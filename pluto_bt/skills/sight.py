@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import LaserScan, SonarState
 from pluto_bt.maps.platform import Platform
@@ -113,9 +111,9 @@ class Sight:
 
     def _listen(self, sonar: SonarState, ring: SonarRing, robot: Planar, with_laser: bool, now_s: float) -> None:
         """Remember the echoes that the laser does not explain; where it sees the same thing it knows better where."""
-        ranges = np.array(sonar.ranges_m)
-        self._sonar_is_good = ranges.shape == (ring.count,) and bool(np.isfinite(ranges).all())
-        if not self._sonar_is_good:
+        ranges = ring.readings(sonar.ranges_m)
+        self._sonar_is_good = ranges is not None
+        if ranges is None:
             return
         p = self.parameters
         near = ranges < min(p.reach_m, ring.max_range_m)

@@ -10,7 +10,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pluto_bt.blackboard.messages import LaserScan
+from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.maps.kernel import kernel
 from pluto_bt.skills.movers import MOVED_BEAMS, Mask, came_closer
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.scans_before import ScansBefore
@@ -59,13 +60,7 @@ class WalkedGround:
         watched_s, self._looked_s = min(scan.stamp_s - self._looked_s, LOOK_S), scan.stamp_s
         if not self._points:
             return
-        x_m, y_m, stamps_s, seconds = self._steps.T
-        bearings_rad = np.arctan2(y_m - laser[1], x_m - laser[0]) - laser[2]
-        beams = np.rint((np.remainder(bearings_rad + np.pi, 2.0 * np.pi) - np.pi - scan.angle_min_rad) / scan.angle_step_rad).astype(np.intp)
-        shown_m = scan.ranges_m[np.clip(beams, 0, len(scan.ranges_m) - 1)]
-        is_in_field = (beams >= 0) & (beams < len(scan.ranges_m))
-        seconds += watched_s * (is_in_field & (shown_m > np.hypot(x_m - laser[0], y_m - laser[1]) - HIDDEN_M))
-        kept = (seconds < MEMORY_S) & (scan.stamp_s - stamps_s < LONGEST_S)
+        kept = grown_old(self._steps, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, laser, scan.stamp_s, watched_s)
         if not kept.all():
             self._points, self._steps = [self._points[i] for i in np.flatnonzero(kept).tolist()], self._steps[kept]
 
@@ -75,8 +70,29 @@ class WalkedGround:
         return np.concatenate(self._points[first:]) if first < len(self._points) else NOWHERE
 
 
+@kernel
+def grown_old(
+    steps: Array, ranges_m: Array, angle_min_rad: float, angle_step_rad: float, laser: Planar, stamp_s: float, watched_s: float
+) -> Mask:  # fmt: skip
+    """Add `watched_s` to the last column of those `steps` that a scan looks at; (n,) which of them are not over."""
+    kept = np.zeros(steps.shape[0], dtype=np.bool_)
+    for i in range(steps.shape[0]):
+        dx, dy = steps[i, 0] - laser[0], steps[i, 1] - laser[1]
+        bearing_rad = (math.atan2(dy, dx) - laser[2] + math.pi) % (2.0 * math.pi) - math.pi
+        beam = int(np.rint((bearing_rad - angle_min_rad) / angle_step_rad))
+        if 0 <= beam < ranges_m.shape[0] and ranges_m[beam] > math.hypot(dx, dy) - HIDDEN_M:
+            steps[i, 3] += watched_s
+        kept[i] = steps[i, 3] < MEMORY_S and stamp_s - steps[i, 2] < LONGEST_S
+    return kept
+
+
 def cells_beside(cells: Array, n: int, size: int) -> tuple[Indices, Indices]:
     """The cells (rows, columns) under `cells` (k, 2), places in cells, and up to `n` beside them, of a square grid of `size`."""
     i, j = np.floor(cells).astype(np.intp).T
     di, dj = np.mgrid[-n : n + 1, -n : n + 1].reshape(2, -1, 1)
     return np.clip(i + di, 0, size - 1), np.clip(j + dj, 0, size - 1)
+
+
+def warm() -> None:
+    """Use the kernel once that only a place where somebody has walked needs."""
+    grown_old(np.zeros((1, 4)), read_only((1.0,)), 0.0, 1.0, (0.0, 0.0, 0.0), 0.0, 0.0)

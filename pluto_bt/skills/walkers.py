@@ -42,12 +42,14 @@ class WalkerWatch:
         self._walkers: list[Walker] = []
         self._perhaps: list[Walker] = []  # heard, and it may be something that stands: they count for a moment
         self._doubted_s = -math.inf
+        self._rows: tuple[float, Array] = (-math.inf, NOBODY)  # the last ones, and when they were; before anything is taken they hold
 
     def take_scan(self, scan: LaserScan, laser: Planar, believed: Array) -> None:
         """A level scan from where the laser was, yaw with the wrist's pan; `believed` as in `SeenSpace`."""
         before = self._before.take(scan, laser)
         if before is None:
             return
+        self._rows = (-math.inf, NOBODY)
         near: Mask = (scan.ranges_m > 0.0) & (scan.ranges_m < REACH_M) & (believed != 0.0)
         points, beams = _ends(scan, laser, near)
         moved = came_closer(scan.ranges_m, near, before[0].ranges_m, laser, before[1], scan.angle_min_rad, scan.angle_step_rad, len(points))
@@ -58,6 +60,8 @@ class WalkerWatch:
 
     def take_echoes(self, places: Array, stamp_s: float) -> None:
         """(n, 4) x m, y m, how far beside that he may be, and how well it is known: who comes nearer, as `Approach` hears it."""
+        if len(places):
+            self._rows = (-math.inf, NOBODY)
         heard: list[Walker] = []
         for x, y, unsure_m, how in places.tolist():
             one = Walker(x, y, 0.0, 0.0, unsure_m, stamp_s, stamp_s, SURE if how == SURELY else 1)
@@ -71,6 +75,11 @@ class WalkerWatch:
 
     def rows(self, now_s: float) -> Array:
         """(n, WALKER_COLUMNS) of all who are known about, also those who were noticed once only, for a moment; see `Walker.row`."""
+        if self._rows[0] != now_s:
+            self._rows = (now_s, self._rows_at(now_s))
+        return self._rows[1]
+
+    def _rows_at(self, now_s: float) -> Array:
         self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
         self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
         known = (*self._walkers, *self._perhaps)

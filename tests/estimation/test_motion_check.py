@@ -39,7 +39,9 @@ class Drive:
         self._wheels, self._gyro, self._has_laser = wheels, gyro, has_laser
         self._scene, self._rng = Scene(ROOM), np.random.default_rng(3)
         self._k = 0
-        self._scans: list[tuple[int, np.ndarray]] = []
+        self._scans: list[tuple[int, float, np.ndarray]] = []
+        self.pan: Callable[[float], float] = lambda t: 0.0
+        self.near: list[tuple[float, float, float]] = []  # who stands there: x m, y m, radius m
 
     def run(self, seconds: float, speed: float = 0.5) -> Drive:
         for _ in range(round(seconds / DT_S)):
@@ -56,13 +58,26 @@ class Drive:
         return self
 
     def _scan(self, t: float) -> None:
-        if self._k % SCAN_EVERY == 0 and self._has_laser:
+        pan = self.pan(t)
+        if self._k % SCAN_EVERY == 0 and self._has_laser and math.isfinite(pan):
             ranges = np.zeros(361)
-            self._scene.scan(compose(self.true, ARM), 0.6, 0.0, ANGLES, 80.0, ranges)
-            self._scans.append((self._k, np.round(ranges + 0.01 * self._rng.normal(size=361), 2)))
+            self._scene.scan(compose(self.true, (*ARM[:2], pan)), 0.6, 0.0, ANGLES, 80.0, ranges)
+            ranges = np.minimum(ranges, self._people(compose(self.true, (*ARM[:2], pan))))
+            self._scans.append((self._k, pan, np.round(ranges + 0.01 * self._rng.normal(size=361), 2)))
         if self._scans and self._scans[0][0] + LATE <= self._k:
-            k, ranges = self._scans.pop(0)
-            self.check.look(k * DT_S, ranges, float(ANGLES[0]), float(ANGLES[1] - ANGLES[0]), ARM)
+            k, pan, ranges = self._scans.pop(0)
+            self.check.look(k * DT_S, ranges, float(ANGLES[0]), float(ANGLES[1] - ANGLES[0]), (*ARM[:2], pan))
+
+    def _people(self, laser: Pose2) -> np.ndarray:
+        """How far the beams come before they meet one of those who stand near."""
+        x, y, theta = laser
+        free = np.full(len(ANGLES), np.inf)
+        for px, py, radius in self.near:
+            ahead = (px - x) * np.cos(theta + ANGLES) + (py - y) * np.sin(theta + ANGLES)
+            aside = (py - y) * np.cos(theta + ANGLES) - (px - x) * np.sin(theta + ANGLES)
+            meets = (ahead > 0.0) & (np.abs(aside) < radius)
+            free[meets] = np.minimum(free[meets], ahead[meets] - np.sqrt(radius**2 - aside[meets] ** 2))
+        return free
 
     @property
     def error_m(self) -> float:
@@ -129,6 +144,36 @@ def test_a_robot_that_is_carried_is_lost_until_somebody_finds_it(to: Pose2) -> N
     drive.check.found()
     drive.believed = drive.true
     assert drive.run(3.0).words == [LOST] and not drive.check.lost and drive.error_m < 0.05
+
+
+@pytest.mark.parametrize("to", [(10.7, 1.0, 0.4), (-7.8, 0.0, 2.9), (-8.2, -3.5, -1.9), (11.0, -4.0, -0.8), (10.9, 5.0, 1.9)])
+def test_a_robot_that_is_set_down_close_to_a_wall_is_lost_though_people_might_stand_so_near(to: Pose2) -> None:
+    drive = Drive().run(3.0)
+    drive.true = to
+    assert drive.run(2.0, speed=0.0).words == [LOST]
+
+
+def test_a_robot_round_which_people_come_to_stand_is_not_lost_and_neither_when_they_have_gone() -> None:
+    drive = Drive().run(3.0)
+    drive.near = [(x, y, 0.25) for x, y in ((-3.7, -0.9), (-3.3, -0.4), (-3.3, 0.3), (-3.6, 0.9), (-4.4, 1.0), (-4.3, -1.0))]
+    assert drive.run(4.0, speed=0.0).words == []
+    drive.near = []
+    assert drive.run(4.0).words == [] and drive.error_m < 1e-6
+
+
+def left_and_right(t: float) -> float:
+    """A wrist that looks to the left, to the right and ahead, a second each, and is on its way (NaN) for a second between."""
+    return (0.95, math.nan, -0.95, math.nan, 0.0, math.nan)[int(t) % 6]
+
+
+@pytest.mark.parametrize("speed", [0.0, 0.4], ids=["standing", "driving"])
+@pytest.mark.parametrize("after_s", [k * 0.5 for k in range(12)])
+def test_who_is_carried_while_the_laser_looks_left_and_right_is_lost_whenever_that_happens(after_s: float, speed: float) -> None:
+    drive = Drive()
+    drive.pan = left_and_right
+    assert drive.run(6.1 + after_s, speed=speed).words == []
+    drive.true = (6.0, 4.0, 2.0)
+    assert drive.run(6.0, speed=0.0).words == [LOST]
 
 
 @pytest.mark.parametrize(("hidden_s", "words"), [(0.2, []), (2.0, [LOST, FOUND])], ids=["for one scan", "for a while"])

@@ -13,8 +13,9 @@ from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_map import CELLS, LocalMap
-from pluto_bt.skills.map_kernels import clearances
+from pluto_bt.skills.map_kernels import Floats, clearances
 from pluto_bt.skills.motion_parameters import MotionParameters
+from pluto_bt.skills.window import Window
 
 ANGLES = -math.pi / 2.0 + math.radians(0.5) * np.arange(361)
 HEIGHT_M = 0.6
@@ -116,11 +117,19 @@ def test_clearance_is_the_distance_to_the_nearest_thing_but_for_eight_percent(se
     here = np.array((i, j))
     things = here + rng.integers(-18, 18, (int(rng.integers(1, 8)), 2))
     map.evidence[things[:, 0], things[:, 1]] = 6
-    map._changed(i, j, 10.0)
+    map._changed(Window.around(i, j, 40.0))
     map.refresh(0.0)
     for a, b in here + rng.integers(-15, 15, (30, 2)):
         true = min(map.far_cells, float(np.hypot(things[:, 0] - a, things[:, 1] - b).min()))
         assert true - 1e-3 <= map.clearance[a, b] <= 1.09 * true + 1e-4
+
+
+def whole_clearance(map: LocalMap, now_s: float) -> Floats:
+    """Reckoned anew, for the whole grid."""
+    whole = np.full_like(map.clearance, map.far_cells)
+    oldest_s = max(0.0, now_s - map.parameters.ground_memory_s) - 1e-3
+    clearances(map.evidence, map.low_s, oldest_s, 0, CELLS, 0, CELLS, whole, math.ceil(map.far_cells), map.far_cells)
+    return whole
 
 
 @given(seed=st.integers(0, 1000))
@@ -130,15 +139,35 @@ def test_clearance_kept_up_to_date_bit_by_bit_is_that_of_a_whole_reckoning(seed:
     rng = np.random.default_rng(seed)
     map = LocalMap(MotionParameters())
     memory_s = map.parameters.ground_memory_s
+    map.shut(0.0, 0.0, 0.3, 0.5)
     here = np.array(map.cell(0.0, 0.0))
     for now_s in (1.0, 2.0, 1.5 + memory_s, 2.5 + memory_s):
         come, go, low = here + rng.integers(-18, 18, (3, int(rng.integers(0, 6)), 2))
         map.evidence[come[:, 0], come[:, 1]] = 6
         map.evidence[go[:, 0], go[:, 1]] = -4
         map.low_s[low[:, 0], low[:, 1]] = now_s
-        map._changed(float(here[0]), float(here[1]), 10.0)
+        map._changed(Window.around(float(here[0]), float(here[1]), 40.0))
         map.refresh(now_s)
-        whole = np.full_like(map.clearance, map.far_cells)
-        oldest_s = max(0.0, now_s - memory_s) - 1e-3
-        clearances(map.evidence, map.low_s, oldest_s, 0, CELLS, 0, CELLS, whole, math.ceil(map.far_cells), map.far_cells)
-        assert np.array_equal(map.clearance, whole)
+        assert np.array_equal(map.clearance, whole_clearance(map, now_s))
+
+
+@given(seed=st.integers(0, 1000), looks_down=st.booleans())
+@settings(max_examples=12, deadline=None)
+def test_scan_by_scan_clearance_is_that_of_a_whole_reckoning(seed: int, looks_down: bool) -> None:
+    """The robot drives on, so that the grid moves along too; what lies low is forgotten on the way."""
+    rng = np.random.default_rng(seed)
+    map = LocalMap(MotionParameters())
+    way_m, heading_rad = 0.0, float(rng.uniform(-3.0, 3.0))
+    for k in range(40):
+        now_s, tilt_rad = 3.0 * k, 0.3 if looks_down and k % 5 == 2 else 0.0
+        at = (way_m * math.cos(heading_rad), way_m * math.sin(heading_rad))
+        ranges_m = np.clip(rng.uniform(2.0, 20.0) + np.cumsum(rng.normal(0.0, 0.3, 361)), 0.3, 30.0)
+        ranges_m[rng.random(361) < 0.03] = np.nan
+        seen = LaserScan(now_s, ANGLES[0], math.radians(0.5), read_only(ranges_m), 361)
+        map.add(seen, (*at, heading_rad + float(rng.normal(0.0, 1.0))), HEIGHT_M, tilt_rad)
+        if k % 3 == 2:
+            map.refresh(now_s)
+            i, j = map.cell(*at)
+            near = np.s_[i - 100 : i + 100, j - 100 : j + 100]  # farther off, what falls off the grid still counts
+            assert np.array_equal(map.clearance[near], whole_clearance(map, now_s)[near])
+        way_m += float(rng.uniform(0.0, 6.0))

@@ -66,8 +66,11 @@ def test_a_level_scan_marks_the_cells_that_its_samples_lie_in(seed: int) -> None
     evidence: Bytes = rng.integers(LEAST, MOST + 1, (N, N)).astype(np.int8)
     covered: Bytes = np.zeros((N, N), dtype=np.int8)
     plain_evidence, plain_covered = evidence.copy(), covered.copy()
-    mark_level(evidence, covered, np.zeros((N, N), dtype=np.int32), 1, x, y, bearings, ranges, LOOK, COVER, JOIN)
+    before, touched = evidence.copy(), np.zeros((N, N), dtype=np.int8)
+    i0, i1, j0, j1 = mark_level(evidence, covered, touched, 1, x, y, bearings, ranges, LOOK, COVER, JOIN)
     plain_level(plain_evidence, plain_covered, x, y, bearings, ranges)
+    before[i0:i1, j0:j1] = evidence[i0:i1, j0:j1]
+    assert np.array_equal(before, evidence), "the window holds all that changed"
     assert np.array_equal(evidence, plain_evidence) and np.array_equal(covered, plain_covered)
 
 

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
@@ -13,7 +15,7 @@ from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
-from pluto_bt.skills.walked_ground import LONGEST_S, MEMORY_S, WalkedGround
+from pluto_bt.skills.walked_ground import HIDDEN_M, LONGEST_S, MEMORY_S, WalkedGround, grown_old
 from pluto_bt.skills.ways import Ways
 from tests.chain.robots import ATRV2
 
@@ -99,3 +101,24 @@ def test_what_a_scan_that_looks_down_finds_where_somebody_walks_are_his_feet() -
     map.shut(2.0, 1.0, 0.2, LOOKED_S)
     map.forget_feet(walked.places(LOOKED_S))
     assert map.low_s[map.cell(x, y)] < 0.0 < map.low_s[map.cell(2.0, 1.0)]
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=40, deadline=None)
+def test_steps_grow_old_one_by_one_as_they_do_all_at_once(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    laser, stamp_s, watched_s, count = (0.4, -0.3, float(rng.uniform(-7.0, 7.0))), 130.0, 0.2, int(rng.integers(1, 30))
+    steps = np.column_stack((rng.uniform(-9.0, 9.0, (count, 2)), rng.uniform(0.0, stamp_s, count), rng.uniform(0.0, 1.2 * MEMORY_S, count)))
+    ranges_m = rng.uniform(0.5, 12.0, len(ANGLES))
+    ranges_m[rng.random(len(ANGLES)) < 0.05] = np.nan
+
+    dx, dy = steps[:, 0] - laser[0], steps[:, 1] - laser[1]
+    bearings = np.remainder(np.arctan2(dy, dx) - laser[2] + np.pi, 2.0 * np.pi) - np.pi
+    beams = np.rint((bearings - ANGLES[0]) / math.radians(0.5)).astype(np.intp)
+    is_in_field = (beams >= 0) & (beams < len(ANGLES))
+    is_seen = is_in_field & (ranges_m[np.clip(beams, 0, len(ANGLES) - 1)] > np.hypot(dx, dy) - HIDDEN_M)
+    seconds = steps[:, 3] + watched_s * is_seen
+    kept = (seconds < MEMORY_S) & (stamp_s - steps[:, 2] < LONGEST_S)
+
+    assert grown_old(steps, read_only(ranges_m), float(ANGLES[0]), math.radians(0.5), laser, stamp_s, watched_s).tolist() == kept.tolist()
+    assert steps[:, 3].tolist() == seconds.tolist()

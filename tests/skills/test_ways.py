@@ -16,6 +16,7 @@ from pluto_bt.skills.outline import outline_of
 from pluto_bt.skills.rays import Openings, free_m, is_open
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.ways import Ways
+from pluto_bt.skills.window import Window
 
 OUTLINE = outline_of([(0.585, 0.425), (-0.585, 0.425), (-0.585, -0.425), (0.585, -0.425)])
 HERE = (0.0, 0.0, 0.0)
@@ -30,7 +31,7 @@ def ground(*walls: tuple[float, float, float, float], size_m: float = 20.0) -> L
     for x0, y0, x1, y1 in walls:
         a, b = map.cell(x0, y0), map.cell(x1, y1)
         map.evidence[a.i : b.i + 1, a.j : b.j + 1] = 6
-    map._changed(*map.cell(0.0, 0.0), size_m + 6.0)
+    map._changed(Window.around(*map.cell(0.0, 0.0), (size_m + 6.0) / map.cell_m))
     map.refresh(0.0)
     return map
 

@@ -87,3 +87,15 @@ def test_a_full_circle_around_it_with_the_laser_on_it(
     nearest = np.abs(bearing) - limit_rad  # the wrist cannot do better
     assert (off - nearest).max() < math.radians(4.0)
     assert off.max() < math.radians(95.0 if devices.wrist is None else 60.0)
+
+
+def test_who_is_carried_off_on_the_circle_stands_and_is_lost(scenario: Play, tmp_path: Path) -> None:
+    drum = '<circle id="drum" x="6" y="1" r="0.5"/>'
+    script = '<script><at t="55"><place id="robot" x="-5" y="-6" theta_deg="70"/></at></script></world>'
+    world, mission = tmp_path / "field.xml", tmp_path / "mission.xml"
+    world.write_text(FIELD.format(seed=1, shape=drum, platform="atrv2", theta_deg=0).replace("</world>", script), encoding="utf-8")
+    mission.write_text('<root BTCPP_format="4"><BehaviorTree ID="main"><Investigate radius_m="2.0"/></BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(world), mission=str(mission), max_time_s=120.0)
+    assert (run.result, run.reason, run.collisions) == ("FAILURE", "lost", 0), run.text
+    assert "CircleObject" in run.text and 55.0 < run.sim_time_s < 65.0
+    assert math.dist(run.final_pose[:2], (-5.0, -6.0)) < 0.6

@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from pluto_bt.bench.towns import Town
@@ -65,6 +66,30 @@ def test_moveto_drives_round_a_hole_that_a_level_scan_does_not_see(tell: Any) ->
 def test_moveto_drives_round_a_kerb_that_a_level_scan_passes_over(tell: Any) -> None:
     run = tell('<MoveTo goal="20;4"/>', lane('<polygon id="kerb" height="0.2">9,2.5 11,2.5 11,5 9,5</polygon>'))
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+
+
+def low_things(seed: int, height_m: float) -> str:
+    """A kerb with a gap, a plate and a box in the lane, the robot's straight way leading over each of them."""
+    rng = np.random.default_rng(seed)
+    at = [8.0 + 6.0 * k + float(rng.uniform(-1.0, 1.0)) for k in range(3)]
+    kerb, plate, box = rng.permutation(at).tolist()
+    low, high = (0.02, 5.0) if rng.random() < 0.5 else (3.0, 7.98)
+    corners = f"{kerb:.2f},{low} {kerb + 0.25:.2f},{low} {kerb + 0.25:.2f},{high} {kerb:.2f},{high}"
+    return (f'<polygon id="kerb" height="{height_m}">{corners}</polygon>'
+            f'<circle id="plate" height="{height_m}" x="{plate:.2f}" y="{rng.uniform(3.4, 4.6):.2f}" r="0.3"/>'
+            f'<polygon id="box" height="{height_m}">{box:.2f},3.4 {box + 0.8:.2f},3.6 {box + 0.6:.2f},4.6 {box - 0.2:.2f},4.4</polygon>')  # fmt: skip
+
+
+@pytest.mark.parametrize(("seed", "height_m"), [(1, 0.12), (2, 0.12), (3, 0.15), (4, 0.15), (5, 0.3)])
+def test_moveto_runs_into_none_of_the_low_things_on_its_way(tell: Any, seed: int, height_m: float) -> None:
+    run = tell('<MoveTo goal="27;4"/>', lane(low_things(seed, height_m)), seed=seed, max_time_s=200.0)
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+
+
+def test_moveto_finds_the_way_round_what_it_only_feels(tell: Any) -> None:
+    run = tell('<MoveTo goal="20;4"/>', lane('<polygon id="sill" height="0.04">12,3 12.3,3 12.3,5 12,5</polygon>'), max_time_s=200.0)
+    assert run.result == "SUCCESS", run.text
+    assert 1 <= run.collisions <= 4, "not again and again"
 
 
 @pytest.mark.parametrize("platform", ["atrv2", "pioneer"])

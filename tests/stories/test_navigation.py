@@ -70,6 +70,13 @@ def test_a_robot_that_is_locked_in_waits_and_then_says_so(tell: Any) -> None:
     assert (run.result, run.collisions) == ("SUCCESS", 0), "somebody opened in time"
 
 
+def test_who_is_carried_off_on_its_way_is_lost_and_says_so_with_that_word(tell: Any) -> None:
+    house = House.make(5, "pioneer", 0.9, script='<at t="9"><place id="robot" x="9" y="9" theta_deg="130"/></at>')
+    run = tell('<NavigateTo goal="room5" reason="{why}"/>', house.text, max_time_s=60.0)
+    assert (run.result, run.reason, run.collisions) == ("FAILURE", "lost", 0), run.text
+    assert run.sim_time_s < 20.0
+
+
 @pytest.mark.parametrize(
     ("goal", "word", "sentence"),
     [

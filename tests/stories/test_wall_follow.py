@@ -141,3 +141,10 @@ def test_along_the_buildings_of_a_real_yard(along: Any) -> None:
 def test_one_seed_gives_one_trace_along_a_wall(along: Any) -> None:
     hashes = [along(long(), 'length_m="4"', seed=seed).trace_sha256 for seed in (3, 3, 4)]
     assert hashes[0] == hashes[1] != hashes[2]
+
+
+def test_round_a_house_in_an_open_field_nobody_is_lost_where_half_a_scan_sees_nothing(along: Any) -> None:
+    """Building 9333: behind its corners nothing comes back to half of the beams for seconds, and then another side of the house is in view."""
+    building, platform, side = Building.for_seed(9333)
+    run = along(building.text, f'side="{side}" length_m="20"', max_time_s=100.0)
+    assert (run.result, run.said("lost")) == ("SUCCESS", []), (platform, run.text)

@@ -6,6 +6,7 @@ import importlib
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, Final
 
 from py_trees.ports import get_ports_registry
@@ -102,7 +103,9 @@ def _own_type(name: str, cls: type[Node], *, builtin: bool) -> NodeType:
     return NodeType(name, cls.KIND, cls.PORTS, cls, children, builtin, _about(cls))
 
 
+@cache
 def _leaf_type(tag: str, cls: Any) -> NodeType:
+    """Made once for each class: a job of motion loads its tree while the robot drives."""
     kind = "Condition" if getattr(cls, "KIND", "Action") == "Condition" else "Action"
     return NodeType(tag, kind, models_of_class(cls), cls, (0, 0), builtin=False, description=_about(cls))
 
