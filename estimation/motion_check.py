@@ -59,7 +59,7 @@ class MotionCheck:
         self.news: list[News] = []
         self.turn, self.way = TurnTrial(self.news, wheels_know_turns), WayTrial(self.news)
         self._gyro_trim, self._wheel_trim = Trim(OF_GYRO), Trim(OF_WHEELS)
-        self._is_carried_off = False
+        self._is_carried_off = self._talks_nonsense = False
         self.fits = 1.0
         self._reckoning = Reckoning()
         self._key: KeyScan | None = None
@@ -77,6 +77,11 @@ class MotionCheck:
     def lost(self) -> bool:
         """True while nobody knows where the robot is, or where a car without gyro points: its wheels know of no turn."""
         return self._is_carried_off or not (self.turn.trusts_gyro or self._asks_wheels)
+
+    @property
+    def believes_tilt(self) -> bool:
+        """False while the sensor tells of turns that no robot makes: what it says of the slope is not worth more."""
+        return self.turn.trusts_gyro or not self._talks_nonsense
 
     # ---------------------------------------------------------------- steps
 
@@ -101,10 +106,12 @@ class MotionCheck:
     def bias_moved(self, by_radps: float) -> None:
         """The gyro's own bias was measured anew, higher by so much."""
         self.turn.bias_moved(by_radps)
+        self._talks_nonsense = False
         self._gyro_trim.moved(by_radps)
 
     def _refuse_gyro(self, why: str) -> None:
         self.turn.refuse(why)
+        self._talks_nonsense = True
         if not self._asks_wheels:
             self.news.append(News(LOST, f"{why}, and nothing else tells where the robot points"))
 

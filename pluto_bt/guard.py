@@ -14,7 +14,9 @@ from pluto_bt.source import PlutoError
 if TYPE_CHECKING:
     from pluto_bt.system import System
 
+MODULE_ERROR = "module-error"
 BASE_LOST_AFTER_S = 2.0
+MENDED_S = 1.5  # after so long a module that was started again is trusted, and the robot stands
 SLOW_S = 0.5
 FOR_EVER_S = 1e6
 
@@ -33,6 +35,8 @@ class Guard:
     def __init__(self, system: System) -> None:
         self._system = system
         self._newest_raw = system.board.reader("ATRV2/Drive/Raw")
+        self._down: set[str] = set()  # critical modules that failed and do not run again yet
+        self._mended_s: float | None = None  # when the last of them ran again, while the mission still waits
         self.ended: End | None = None
 
     def end(self, reason: str, text: str) -> None:
@@ -42,17 +46,22 @@ class Guard:
             self._system.say("error", reason, "supervision", text)
 
     def part_failed(self, part: Part, error: BaseException, is_final: bool) -> None:
-        """A module raised: tell it; if it is critical stop the robot; if it cannot be mended end the run."""
+        """A module raised: tell it. A critical one: the mission pauses, the robot stands till it runs again; if it cannot be mended the run ends."""
         what = f'module "{part.module.name}" failed: {part.error}'
-        self._system.say("error", "module-error", part.module.name, what)
+        self._system.say("error", MODULE_ERROR, part.module.name, what)
         if part.module.critical:
+            self._down.add(part.module.name)
+            self._system.executive.core.pause(MODULE_ERROR)
             self._system.stop_robot("supervision")
         if is_final:
-            self.end("module-error", what)
+            self.end(MODULE_ERROR, what)
 
     def part_restarted(self, part: Part) -> None:
         """A module runs again."""
         self._system.say("info", "module-restarted", part.module.name, f'module "{part.module.name}" was started again')
+        if part.module.critical:
+            self._down.discard(part.module.name)
+            self._mended_s = self._system.clock.now_s()
 
     def hung(self, part: Part) -> None:
         """`part` never returned: name it, or the leaf it is in, stop the robot and end the run."""
@@ -64,10 +73,13 @@ class Guard:
         self._system.stop_robot("supervision")
 
     def look(self) -> None:
-        """End the run if the base has fallen silent."""
-        raw = self._newest_raw()
-        if self._system.clock.now_s() - (0.0 if raw is None else raw.written_s) > BASE_LOST_AFTER_S:
+        """End the run if the base has fallen silent; let the mission go on a while after the modules that failed run again."""
+        raw, now_s = self._newest_raw(), self._system.clock.now_s()
+        if now_s - (0.0 if raw is None else raw.written_s) > BASE_LOST_AFTER_S:
             self.end("base-lost", f"the base has sent no odometry for {BASE_LOST_AFTER_S:g} s")
+        if self._mended_s is not None and not self._down and now_s - self._mended_s >= MENDED_S:
+            self._mended_s = None
+            self._system.executive.core.resume_after(MODULE_ERROR)
 
     # ------------------------------------------------------------------ faults that a world script asks for
 

@@ -42,7 +42,8 @@ AHEAD: Final = Look(0.0, 0.0)
 
 def ground(tilt_rad: float, steepest_rad: float) -> list[Look]:
     """A look over the ground ahead, from near to as far as `tilt_rad` meets it; none where that is 0."""
-    return [Look(0.0, steepest_rad), Look(0.0, tilt_rad, SLOW_DPS)] if tilt_rad > 0.0 else []
+    near = [Look(0.0, steepest_rad)] if steepest_rad > tilt_rad else []
+    return [*near, Look(0.0, tilt_rad, SLOW_DPS if near else RATE_DPS)] if tilt_rad > 0.0 else []
 
 
 class WristTour(RobotLeaf):
@@ -164,9 +165,9 @@ class SweepWrist(WristTour):
             return []
         pan = math.radians(min(float(self.get_input("pan_deg")), wrist.pan_limit_deg))
         tilt = math.radians(min(float(self.get_input("tilt_deg")), wrist.tilt_limit_deg))
-        down = ground(tilt, min(NEAR * tilt, math.radians(wrist.tilt_limit_deg)))
         if self.now_s() - self._walker_s < AMONG_PEOPLE_S:
-            return [*down, *[AHEAD] * LOOKS_AHEAD]
+            return [*ground(tilt, tilt), *[AHEAD] * LOOKS_AHEAD]
+        down = ground(tilt, min(NEAR * tilt, math.radians(wrist.tilt_limit_deg)))
         return [Look(pan, 0.0), *down, Look(-pan, 0.0), *down] if pan > 0.0 else [*down, AHEAD]
 
     def act(self, robot: Robot) -> Status:

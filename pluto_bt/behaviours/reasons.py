@@ -25,7 +25,10 @@ REASONS: Final[dict[str, Reason]] = {
     "interrupted": Reason("the run was ended from the keyboard", "start it again"),
     "leaf-error": Reason("a leaf raised an exception or returned no status", "see the node, file and line in the message"),
     "max-time": Reason("the run has lasted as long as --max-time allows", "give it more time"),
-    "module-error": Reason("a module that is needed failed too often", "see its name and error in the message and in `pluto ps`"),
+    "module-error": Reason(
+        "a module that is needed failed: the mission waits till it runs again, and ends if it fails too often",
+        "see its name and error in the message and in `pluto ps`",
+    ),
     # of leaves
     "bad-command": Reason("a link of the chain refused the command", "see the status text of motion, avoidance and drive"),
     "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),

@@ -130,9 +130,9 @@ class Surroundings:
         self._has_run_into = False
         for view in self.views:
             if view.laser is not None and self._laser is not None:
-                again_s = AGAIN_S if len(self._walked.places(view.scan.stamp_s, FEET_S)) else 0.0
+                has_feet = abs(view.tilt_rad) >= LEVEL_RAD and len(self._walked.places(view.scan.stamp_s, FEET_S)) > 0
                 for grid in self._grids():
-                    grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, again_s)
+                    grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, AGAIN_S if has_feet else 0.0)
                 self._note_walkers(view.scan, view.laser, view.tilt_rad)
         if now_s - self._refreshed_s >= REFRESH_S:
             self._refreshed_s = now_s

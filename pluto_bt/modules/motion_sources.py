@@ -109,6 +109,7 @@ class MotionSources:
         distance_m, turn_rad = self.check.step(stamp_s, dt_s, distance_m, wheel_turn_rad, turn_rad, is_measured)
         noise = self._noise
         turn_var = noise.gyro_turn_var_rad2(dt_s) if is_measured else noise.wheel_turn_var_rad2(distance_m, wheel_turn_rad)
+        tilt = tilt if self.check.believes_tilt else LEVEL
         return Step(stamp_s, arc(distance_m, turn_rad), noise.distance_var_m2(distance_m), turn_var, tilt)
 
     def _theta_at(self, stamp_s: float, now_s: float) -> tuple[float | None, bool, Tilt]:

@@ -7,7 +7,6 @@ things that a level scan passes over. Both are remembered, the second for `groun
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,20 +17,13 @@ from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, al
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
-from pluto_bt.skills.window import Window
+from pluto_bt.skills.window import Cell, Window
 
 CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
 NEVER_S = -1.0
 HERE_M = 1.0  # so near to where the robot has been nothing needs a visit, though its laser has not looked there
-
-
-class Cell(NamedTuple):
-    """Indices of a cell, and (as floats) a place in cells."""
-
-    i: int
-    j: int
 
 
 class LocalMap:
@@ -145,10 +137,9 @@ class LocalMap:
 
     def visit(self, x_m: float, y_m: float) -> None:
         """The robot is here."""
-        i, j = here = self.cell(x_m, y_m)
-        if here == self._visited:
+        if (here := self.cell(x_m, y_m)) == self._visited:
             return
-        self._visited = here
+        self._visited, (i, j) = here, here
         n = self._here.shape[0] // 2
         if n <= i < CELLS - n and n <= j < CELLS - n:
             self.covered[i - n : i + n + 1, j - n : j + n + 1] |= self._here
@@ -168,7 +159,8 @@ class LocalMap:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
         self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
         self._shut.append((x_m, y_m, radius_m, now_s))
-        self._shuts(x_m, y_m, radius_m)
+        self._has_low = True
+        self.changed_around(x_m, y_m, radius_m)
 
     def reopen(self) -> bool:
         """Forget what was shut, but for what has been seen to lie low there since. False if nothing was shut."""
@@ -177,13 +169,8 @@ class LocalMap:
             i, j = self._disc(x_m, y_m, radius_m)
             is_same = self.low_s[i, j] == np.float32(shut_s)
             self.low_s[i[is_same], j[is_same]] = NEVER_S
-            self._shuts(x_m, y_m, radius_m)
+            self.changed_around(x_m, y_m, radius_m)
         return bool(shut)
-
-    def _shuts(self, x_m: float, y_m: float, radius_m: float) -> None:
-        """Something was shut or opened by hand in this disc."""
-        self._has_low = True
-        self._changed(Window.around(*self.place(x_m, y_m), radius_m / self.cell_m))
 
     def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
         """What is here cannot be explored any better: it counts as covered."""
@@ -240,6 +227,10 @@ class LocalMap:
     def _oldest_s(self, now_s: float) -> float:
         """What was seen to lie low before is not known any more."""
         return max(0.0, now_s - self.parameters.ground_memory_s) - 1e-3
+
+    def changed_around(self, x_m: float, y_m: float, reach_m: float) -> None:
+        """Something was written into the cells up to so far from a point."""
+        self._changed(Window.around(*self.place(x_m, y_m), reach_m / self.cell_m))
 
     def _changed(self, window: Window) -> None:
         self._window = window.joined(self._window)

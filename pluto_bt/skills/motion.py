@@ -34,16 +34,17 @@ class Motion:
         self.rectangle: Rectangle | None = None
         self._avoid, self._has_laser = avoid, has_laser
         self._orders = 0
+        self.job: Job | None = None  # the one at work
+        self.kept: Job | None = None  # the one that was stopped and can be taken up again
+        self.moveto = MovetoStatus.NONE
         self.reset()
 
     def reset(self) -> None:
-        """No command, no job. The rectangle outlives a restart of the thread."""
+        """No command. The rectangle outlives a restart of the thread, and a job that it stopped can be taken up again."""
         self.command: ActuatorState | None = None
         self.verdict = ALL_WELL
-        self.moveto, self._phase = MovetoStatus.NONE, MotionStatus.AT_REST
-        self.job: Job | None = None  # the one at work
-        self.kept: Job | None = None  # the one that was stopped and can be taken up again
-        self._is_ordered = False
+        self._end_job()
+        self._phase, self._is_ordered = MotionStatus.AT_REST, False
 
     def order(self) -> tuple[bool, Job | None]:
         """(whether there is a new order, the job to run or None to end it), once."""

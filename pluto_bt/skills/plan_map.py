@@ -9,9 +9,9 @@ import numpy as np
 
 from pluto_bt.maps.raster import OCCUPIED, Frame, drawn, frame_of
 from pluto_bt.maps.world import World
-from pluto_bt.skills.local_map import Cell
 from pluto_bt.skills.map_kernels import Floats, clearances, draw_tight, under_places
 from pluto_bt.skills.outline import Array
+from pluto_bt.skills.window import Cell
 
 KNOWN_M = 0.3  # what is seen so near to what the map shows is the same thing
 LOOK_M = 2.0  # clearances beyond this are all the same

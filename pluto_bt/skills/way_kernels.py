@@ -141,7 +141,8 @@ def search(
                     is_ending = goal_reach >= 0.0 and math.hypot(a - goal[0], b - goal[1]) <= relaxed
                     if free < min(least_at_start if is_begun else least, least_at_goal if is_ending else least):
                         continue
-                    if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (-0.5 if is_begun or is_ending else rectangle[EDGE]):
+                    is_home = math.hypot(a - rectangle[HOME_X], b - rectangle[HOME_Y]) <= relaxed  # the base runs through it
+                    if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (-0.5 if is_begun or is_ending or is_home else rectangle[EDGE]):
                         continue
                 factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
                 if free < half:

@@ -14,7 +14,7 @@ from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.way_kernels import search
 
 TURNING_GAP_M = 0.15  # what must be left around a robot that turns on the spot
-RELAXED_M = 1.2  # so near to its start and its goal a way may be as tight as they are, and nearer to the edge of the rectangle
+RELAXED_M = 1.2  # so near to its start and its goal a way may be as tight as they are; and there and beside home on the edge of the rectangle
 GREED = 1.5  # the search hurries towards the goal, for it is asked often
 Ground = tuple[Bytes, Floats]  # evidence and clearance, as those of `LocalMap`
 BEYOND_M = 3.0  # a goal beyond the map is reached for now if the edge of the map is reached so near to it

@@ -1,9 +1,16 @@
-"""A rectangle of cells of a grid."""
+"""Cells of a grid: one, and a rectangle of them."""
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
+
+
+class Cell(NamedTuple):
+    """Indices of a cell, and (as floats) a place in cells."""
+
+    i: int
+    j: int
 
 
 class Window(NamedTuple):

@@ -43,6 +43,7 @@ class Executive:
         self._body = body
         self._say = say  # (level, code, text)
         self._orders: deque[tuple[Callable[[], None], dict[str, str]]] = deque()  # what to do; what it makes of the mission's state
+        self._later: list[tuple[Callable[[], None], dict[str, str]]] = []  # orders of the next step
         self._done: list[Done] = []
         self._runs = 0
         self.mission: Activity | None = None
@@ -86,6 +87,8 @@ class Executive:
 
     def step(self, now_s: float) -> list[Activity]:
         """One turn: orders, a fresh view, one decision of the mission and one of the job. Gives what was ticked."""
+        self._orders.extend(self._later)
+        self._later.clear()
         while self._orders:
             self._orders.popleft()[0]()
         ticked = [activity for activity in (self.active, self.job) if activity is not None and activity.state == RUNNING]
@@ -147,6 +150,18 @@ class Executive:
     def resume(self) -> None:
         """Let a paused mission go on where its tree stands; motion leaves command again when they are next ticked."""
         self._orders.append((self._resume, {PAUSED: RUNNING}))
+
+    def resume_after(self, reason: str) -> None:
+        """As `resume`, a step later, if it is for this reason that the mission waits. Thread-safe.
+
+        A step later because the stop that came with the pause may still be on its way, and no command overtakes a stop.
+        """
+
+        def act() -> None:
+            if self.mission is not None and self.mission.reason == reason:
+                self._resume()
+
+        self._orders.append((lambda: self._later.append((act, {})), {}))
 
     def let_go(self) -> None:
         """Stop the robot if something is at work; it stays in its state, and goes on when `step` is called again."""

@@ -15,7 +15,6 @@ from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_map import CELLS, LocalMap
 from pluto_bt.skills.map_kernels import Floats, clearances
 from pluto_bt.skills.motion_parameters import MotionParameters
-from pluto_bt.skills.window import Window
 
 ANGLES = -math.pi / 2.0 + math.radians(0.5) * np.arange(361)
 HEIGHT_M = 0.6
@@ -117,7 +116,7 @@ def test_clearance_is_the_distance_to_the_nearest_thing_but_for_eight_percent(se
     here = np.array((i, j))
     things = here + rng.integers(-18, 18, (int(rng.integers(1, 8)), 2))
     map.evidence[things[:, 0], things[:, 1]] = 6
-    map._changed(Window.around(i, j, 40.0))
+    map.changed_around(0.0, 0.0, 10.0)
     map.refresh(0.0)
     for a, b in here + rng.integers(-15, 15, (30, 2)):
         true = min(map.far_cells, float(np.hypot(things[:, 0] - a, things[:, 1] - b).min()))
@@ -146,7 +145,7 @@ def test_clearance_kept_up_to_date_bit_by_bit_is_that_of_a_whole_reckoning(seed:
         map.evidence[come[:, 0], come[:, 1]] = 6
         map.evidence[go[:, 0], go[:, 1]] = -4
         map.low_s[low[:, 0], low[:, 1]] = now_s
-        map._changed(Window.around(float(here[0]), float(here[1]), 40.0))
+        map.changed_around(0.0, 0.0, 10.0)
         map.refresh(now_s)
         assert np.array_equal(map.clearance, whole_clearance(map, now_s))
 

@@ -12,7 +12,6 @@ from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.ray_following import GO, LOST, REPLAN_S, TURN, RayFollowing
 from pluto_bt.skills.rays import Openings
 from pluto_bt.skills.ways import Way
-from pluto_bt.skills.window import Window
 
 LEAST_M, ROOM_M = 0.675, 0.87
 
@@ -23,7 +22,7 @@ def doorway(half_width_m: float) -> LocalMap:
     for y_m in np.arange(-8.0, 8.0, 0.5 * map.cell_m).tolist():
         if abs(y_m) > half_width_m:
             map.evidence[map.cell(0.0, y_m)] = 6
-    map._changed(Window.around(*map.cell(0.0, 0.0), 10.0 / map.cell_m))
+    map.changed_around(0.0, 0.0, 10.0)
     map.refresh(0.0)
     return map
 

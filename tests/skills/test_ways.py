@@ -16,7 +16,6 @@ from pluto_bt.skills.outline import outline_of
 from pluto_bt.skills.rays import Openings, free_m, is_open
 from pluto_bt.skills.rectangle import Rectangle
 from pluto_bt.skills.ways import Ways
-from pluto_bt.skills.window import Window
 
 OUTLINE = outline_of([(0.585, 0.425), (-0.585, 0.425), (-0.585, -0.425), (0.585, -0.425)])
 HERE = (0.0, 0.0, 0.0)
@@ -31,7 +30,7 @@ def ground(*walls: tuple[float, float, float, float], size_m: float = 20.0) -> L
     for x0, y0, x1, y1 in walls:
         a, b = map.cell(x0, y0), map.cell(x1, y1)
         map.evidence[a.i : b.i + 1, a.j : b.j + 1] = 6
-    map._changed(Window.around(*map.cell(0.0, 0.0), (size_m + 6.0) / map.cell_m))
+    map.changed_around(0.0, 0.0, size_m + 6.0)
     map.refresh(0.0)
     return map
 
@@ -186,3 +185,15 @@ def test_what_was_shut_is_open_again_but_not_what_was_seen_there_since() -> None
     assert map.clearance_m(3.0, 0.0) > 4.0 and map.clearance_m(3.0, 6.0) == 0.0
     assert map.clearance_m(3.4, 6.0) > 0.0
     assert not map.reopen(), "once"
+
+
+def test_a_door_beside_home_is_passed_although_the_edge_of_the_rectangle_runs_through_it() -> None:
+    wall = ((-20.0, 1.5, -1.2, 1.75), (1.2, 1.5, 20.0, 1.75))
+    rectangle = Rectangle(12.0, 8.0, (0.3, 1.2, math.radians(30.0)))
+    ways = Ways(ground(*wall), OUTLINE)
+    way = ways.to_goal((2.0, 5.0, 0.0), (4.5, 0.0), rectangle)
+    assert rectangle.holds(4.5, 0.0)
+    assert way is not None and min(rectangle.depth_m(x, y) for x, y in way.points.tolist()) > -0.3
+    far = rectangle._replace(home=(3.3, 1.2 - 3.0 * math.sqrt(3.0), math.radians(30.0)), base_m=18.0)
+    assert abs(far.depth_m(0.3, 1.2)) < 0.01, "the same base, home elsewhere on it"
+    assert ways.to_goal((2.0, 5.0, 0.0), (4.5, 0.0), far) is None

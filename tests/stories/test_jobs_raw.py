@@ -86,7 +86,7 @@ def test_what_cannot_be_done_is_told_with_its_reason_and_nothing_moves(robot: An
     for flags, position, velocity in orders:
         r.order(flags, position, velocity)
         r.run(0.3)
-    r.run(20.0, lambda: r.is_at_rest() and r.status.reason != "")
+    r.run(30.0, lambda: r.is_at_rest() and r.status.reason != "")
     assert (r.status.reason, r.status.element[2]) == (reason, 0)
     assert r.is_at_rest()
     assert math.dist(r.pose[:2], (3.0, 4.0)) < 0.02

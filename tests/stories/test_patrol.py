@@ -158,6 +158,22 @@ def test_a_module_that_raises_for_a_moment_pauses_the_drive_only(scenario: Play,
     assert run.said("module-restarted")
 
 
+ONE_LEAF = '<root BTCPP_format="4"><BehaviorTree ID="main">{body}</BehaviorTree></root>'
+
+
+@pytest.mark.parametrize("module", ["base", "local", "filter", "drive", "avoid", "motion", "executive"])
+@pytest.mark.parametrize(("body", "at_s"), [('<GoTo goal="4;-2"/>', 4), ('<MoveTo goal="4;-2"/>', 9)], ids=["goto", "moveto"])
+def test_a_mission_without_a_second_try_goes_on_too_when_the_module_that_raised_runs_again(
+    scenario: Play, square: Any, tmp_path: Any, module: str, body: str, at_s: int
+) -> None:
+    mission = tmp_path / "one.xml"
+    mission.write_text(ONE_LEAF.format(body=body), encoding="utf-8")
+    run = scenario(square(f'<at t="{at_s}"><fault device="module:{module}" kind="raise" for="0.25"/></at>'), mission=str(mission), max_time_s=90.0)
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert run.said("module-restarted") and run.said("resumed")
+    assert math.dist(run.final_pose[:2], (4.0, -2.0)) < 0.5
+
+
 def test_a_lost_base_ends_the_run(scenario: Play, square: Any) -> None:
     run = scenario(square('<at t="4"><fault device="base" kind="off"/></at>'), mission="patrol.xml", ports={"goals": "4,-2"})
     assert (run.result, run.exit_code) == ("STOPPED", 3)

@@ -35,3 +35,16 @@ def test_a_drive_for_some_time_ends_by_its_time_wherever_it_came(scenario: Play,
     mission.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="main">{body}</BehaviorTree></root>', encoding="utf-8")
     run = scenario(str(world), mission=str(mission), max_time_s=60.0)
     assert run.result == "SUCCESS", run.text
+
+
+def test_an_inertial_sensor_that_talks_nonsense_does_not_blind_the_laser_to_wheels_that_spin(scenario: Play, tmp_path: Any) -> None:
+    """It says nonsense of the slope too; a laser that is thought to be tilted is no witness."""
+    world, mission = tmp_path / "field.xml", tmp_path / "mission.xml"
+    garbage = '<at t="7"><fault device="imu" kind="garbage"/></at><at t="8"><fault device="base" kind="slip" for="8"/></at></script>'
+    world.write_text(FIELD.format(at=999).replace("</script>", garbage), encoding="utf-8")
+    mission.write_text('<root BTCPP_format="4"><BehaviorTree ID="main"><GoTo goal="7;8"/></BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(world), mission=str(mission), max_time_s=120.0)
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert run.said("gyro-refused") and run.said("wheel-slip")
+    x, y, _ = run.final_pose
+    assert (x - 7.0) ** 2 + (y - 8.0) ** 2 < 1.0
