@@ -8,7 +8,7 @@ import numpy as np
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.seen_kernels import CAME, Counts
+from pluto_bt.skills.seen_kernels import CAME, SUDDEN, Counts
 from pluto_bt.skills.sonar import Mask, SonarRing
 
 ROUNDS = 4
@@ -47,23 +47,29 @@ class Approach:
         before_m = self._rounds[-1][0] if self._rounds else ranges_m
         kept = self._rounds[1 - ROUNDS :]
         first_m, _, first_s = kept[0] if kept else (ranges_m, robot, stamp_s)
-        ranges_m, near, came, is_small, is_anything = heard_anew(
+        ranges_m, near, is_anything = heard_anew(
             ranges_m, before_m, first_m, self._lost, news, self._ring.max_range_m, self._ring.min_range_m, self._is_alone
         )
         self._rounds = [*kept, (ranges_m, robot, stamp_s)]
         if not is_anything or len(self._rounds) < ROUNDS or stamp_s - first_s > LONGEST_S:
             return NOTHING
-        return self._those_who_walk(near, came, is_small)
+        return self._those_who_walk(near, news)
 
-    def _those_who_walk(self, near: Mask, came: Mask, is_small: Mask) -> Array:
-        """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came."""
+    def _those_who_walk(self, near: Mask, news: Counts) -> Array:
+        """Where they are: those of the near ones that come or go evenly, own motion taken off, and those that came.
+
+        An echo where a laser saw nothing that could be it is from no wall that a cone sweeps over. So it tells of somebody also while the robot
+        turns: surely enough where all was heard free a moment ago, perhaps where something is near all of a sudden.
+        """
         heard_m = np.array([ranges_m for ranges_m, _, _ in self._rounds])
         places = np.array([robot for _, robot, _ in self._rounds])
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
         swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
         stays = heard_m[-1] * swept_rad < SWEPT_M  # where a cone ends while the robot turns fast is not known well enough to say what was free
-        moved = walked(heard_m, places, axes, near, is_small, half_rad)
-        moved[came & stays] = WALKS
+        is_small = (news != 0) & (not self._is_alone)
+        moved = walked(heard_m, places, axes, near, is_small & stays, half_rad)
+        moved[is_small & (news == SUDDEN) & (moved == 0)] = PERHAPS
+        moved[(news == CAME) & (stays | is_small)] = WALKS
         which = np.flatnonzero(moved)
         if not len(which):
             return NOTHING
@@ -79,28 +85,27 @@ class Approach:
 @kernel
 def heard_anew(
     ranges_m: Array, before_m: Array, first_m: Array, lost: Counts, news: Counts, most_m: float, least_m: float, is_alone: bool
-) -> tuple[Array, Mask, Mask, Mask, bool]:
+) -> tuple[Array, Mask, bool]:
     """A round as it counts, and what in it may be somebody.
 
     Args:
         ranges_m, before_m, first_m: (k,) this round, the one before, and the first of those that are compared.
         lost: (k,) rounds in a row without an echo, brought up to date. news: (k,) as `SeenSpace.add_echoes` says.
         most_m, least_m: farthest and nearest that a transducer can tell.
-    Returns: (k,) each: the echoes, the last ones where they have only just stopped coming; who is near and has come or gone; who came where it
-        was free; what no wall explains; and whether there is anybody at all of the first two.
+    Returns: (k,) each: the echoes, the last ones where they have only just stopped coming; who is near and has come or gone; and whether there is
+        anybody at all of these, or an echo that came or is near all of a sudden.
     """
     n = ranges_m.shape[0]
     heard_m, is_anything = ranges_m.copy(), False
-    near, came, is_small = np.zeros(n, dtype=np.bool_), np.zeros(n, dtype=np.bool_), np.zeros(n, dtype=np.bool_)
+    near = np.zeros(n, dtype=np.bool_)
     for k in range(n):
         lost[k] = lost[k] + 1 if ranges_m[k] >= most_m else 0
         if 0 < lost[k] <= MOST_LOST:
             heard_m[k] = before_m[k]
         nearer_m = first_m[k] - heard_m[k]
         near[k] = least_m < heard_m[k] < HEAR_M and (abs(nearer_m) if is_alone else nearer_m) > NEARER_M
-        came[k], is_small[k] = is_alone and news[k] == CAME, not is_alone and news[k] != 0
-        is_anything = is_anything or near[k] or came[k]
-    return heard_m, near, came, is_small, is_anything
+        is_anything = is_anything or near[k] or news[k] >= CAME
+    return heard_m, near, is_anything
 
 
 @kernel

@@ -21,6 +21,7 @@ WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its
 PERSON_M = 0.7  # what is wider may be somebody beside a wall …
 RUN_BEAMS = 5  # … if so many beams side by side end in former free space
 MOVED_BEAMS = 2  # so many beams must end in former free space
+LEFT_SHARE = 0.8  # of the beams of somebody who walked away are free where he stood; of what only shows another side, fewer
 STEP_M = 0.5  # nothing that is tracked goes farther between two scans
 FASTEST_MPS = 2.0
 FOLLOW_S, FOLLOW_M = 1.0, 0.4  # who was seen walking is followed for so long where he is expected, also where only a part of him is in view
@@ -72,6 +73,24 @@ class Movers:
         self._walkers = rows[walks]
         piece = np.repeat(np.arange(len(starts)), sizes)
         return walks[piece], rows[piece, 2:4]
+
+
+def gone_away(points: Array, beams: Beams, before: Array, beams_before: Beams, left: Mask, dt_s: float) -> Array:
+    """(n, 4) x m, y m, velocity x, y m/s: who walks away. He stands where nobody looked through before, for he hid that ground himself.
+
+    Args:
+        points, beams: as of `Movers.velocities`. before, beams_before: the same of a scan `dt_s` older.
+        left: (m,) whether a point of `before` lies in what is free space now.
+    """
+    old = _pieces(before, beams_before, left)
+    is_gone = (np.add.reduceat(left.astype(np.intp), old.starts) >= np.maximum(MOVED_BEAMS, LEFT_SHARE * old.sizes)) & old.is_narrow
+    if not is_gone.any() or not len(points):
+        return np.zeros((0, 4))
+    remains = before[~np.repeat(is_gone, old.sizes)]
+    new = _pieces(points, beams, np.zeros(len(points), dtype=np.bool_))
+    now = np.array([at for at in new.centres[new.is_narrow] if _nearest(at, remains, APART_M) < 0]).reshape(-1, 2)  # what stood there is nobody
+    found = [(at, now[k]) for at in old.centres[is_gone] if (k := _nearest(at, now, FASTEST_MPS * dt_s)) >= 0]
+    return np.array([(*to, *((to - at) / dt_s)) for at, to in found]).reshape(-1, 4)
 
 
 class _Pieces(NamedTuple):

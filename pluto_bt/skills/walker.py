@@ -19,7 +19,7 @@ SAME_M = 0.4  # who is seen where somebody can have come to since, give or take 
 BODY_M = 0.3
 REFUTED_S = 0.3  # who is not seen in the next scans, where he must be, was a phantom
 UNSTEADY_MPS = 0.2  # nobody walks quite evenly
-KEEPS = 0.25  # the middle of where who walks in view may be goes on with so much of his velocity: back from it he walks a little slower than on
+KEEPS = 0.1  # the middle of where who walks in view may be goes on with so much of his velocity; who turns on his heel at 1 m/s is awaited still
 MOST_MPS, HURRY = 2.0, 1.25
 HEARD_MPS = 1.2  # how fast somebody may be who was only heard
 

@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
-from pluto_bt.skills.approach import PERHAPS, SURELY, Approach
+from pluto_bt.skills.approach import PERHAPS, SURELY, WALKS, Approach
 from pluto_bt.skills.outline import Planar, outline_of
-from pluto_bt.skills.seen_kernels import UNKNOWN
+from pluto_bt.skills.seen_kernels import CAME, SUDDEN, UNKNOWN
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.stop_path import DRIFT_X, DRIFT_Y, GROWTH_MPS, IN_VIEW, SPREAD_M
 from pluto_bt.skills.walkers import WalkerWatch
@@ -54,6 +54,17 @@ def test_a_walker_is_found_with_his_place_and_how_far_he_gets(velocity: tuple[fl
     pace_mps, drift_mps = math.hypot(*velocity), math.hypot(rows[0, DRIFT_X], rows[0, DRIFT_Y])
     assert pace_mps <= drift_mps + rows[0, GROWTH_MPS] <= pace_mps + 0.6, "he may go on"
     assert rows[0, GROWTH_MPS] - drift_mps > 0.5 * pace_mps, "and turn on his heel"
+
+
+@pytest.mark.parametrize(("bearing_deg", "speed_mps"), [(0.0, 0.5), (30.0, 0.8), (-50.0, 1.2)])
+def test_who_walks_away_is_found_too_for_he_may_turn_on_his_heel(bearing_deg: float, speed_mps: float) -> None:
+    c, s = math.cos(math.radians(bearing_deg)), math.sin(math.radians(bearing_deg))
+    walk = [((1.0 + speed_mps * SCAN_S * k) * c, (1.0 + speed_mps * SCAN_S * k) * s) for k in range(8)]
+    watch, now_s = watched(walk, [(0.0, 0.0, 0.0)] * 8, Shape("tree", "circle", np.array([[3.0, -2.8]]), 0.2))
+    rows = watch.rows(now_s)
+    assert len(rows) == 1 and rows[0, IN_VIEW] == 1.0 and watch.is_anybody_about(now_s)
+    assert rows[0, :2] == pytest.approx(walk[-1], abs=0.3)
+    assert rows[0, GROWTH_MPS] - math.hypot(rows[0, DRIFT_X], rows[0, DRIFT_Y]) > 0.9 * speed_mps, "he may come back as fast as he went"
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
@@ -186,10 +197,10 @@ def test_walls_and_posts_do_not_come_however_the_robot_moves(name: str, speed_mp
     assert not watch.is_anybody_about(2.0)
 
 
-WALKS = {"goes": [1.0 + 0.1 * k for k in range(10)], "leaves": [0.5] * 5 + [2.5] * 5, "appears": [4.0] * 5 + [0.8] * 5}
+CHANGES = {"goes": [1.0 + 0.1 * k for k in range(10)], "leaves": [0.5] * 5 + [2.5] * 5, "appears": [4.0] * 5 + [0.8] * 5}
 
 
-@pytest.mark.parametrize("walk", WALKS.values(), ids=WALKS)
+@pytest.mark.parametrize("walk", CHANGES.values(), ids=CHANGES)
 def test_a_ring_that_stands_hears_everything_that_moves(walk: list[float]) -> None:
     said = heard("pioneer", [(0.0, 0.0, 0.0)] * 10, [(HALL, post(r, 0.0)) for r in walk])
     watch = WalkerWatch(30.0)
@@ -198,7 +209,7 @@ def test_a_ring_that_stands_hears_everything_that_moves(walk: list[float]) -> No
     assert watch.is_anybody_about(5.0)
 
 
-@pytest.mark.parametrize(("walk", "is_told"), [([2.5 - 0.1 * k for k in range(10)], True), (WALKS["goes"], False)], ids=["comes", "goes"])
+@pytest.mark.parametrize(("walk", "is_told"), [([2.5 - 0.1 * k for k in range(10)], True), (CHANGES["goes"], False)], ids=["comes", "goes"])
 def test_beside_a_laser_the_ring_tells_only_of_who_comes(walk: list[float], is_told: bool) -> None:
     said = heard("pioneer", [(0.0, 0.0, 0.0)] * 10, [(HALL, post(r, 0.0)) for r in walk], is_alone=False)
     assert any(len(found) for found in said) == is_told
@@ -218,12 +229,30 @@ def test_beside_a_robot_that_moves_what_no_laser_explains_is_perhaps_somebody_if
     assert not any(len(found) for found in heard("pioneer", way, near, False, known))
 
 
-def test_who_is_perhaps_there_counts_where_another_walks_and_only_for_a_moment() -> None:
+@pytest.mark.parametrize(("news", "is_alone", "hows"), [(CAME, False, {WALKS}), (SUDDEN, False, {PERHAPS}), (CAME, True, set()), (0, False, set())])
+def test_who_comes_while_the_robot_turns_is_believed_where_a_laser_says_that_it_is_no_wall(news: int, is_alone: bool, hows: set[int]) -> None:
+    """He stands 1.8 m off when he is heard first: with a ring alone the end of a cone that turns so fast may be anything."""
+    said = heard("pioneer", TURNS, [(post(0.0, -1.8),)] * 10, is_alone, NOT_NEW["pioneer"] + news)
+    assert {how for found in said for how in found[:, 3].tolist()} == hows
+
+
+@pytest.mark.parametrize(("how", "lasts_s"), [(PERHAPS, 0.9), (WALKS, 0.5)])
+def test_who_was_noticed_once_counts_for_a_moment_and_nobody_else_because_of_him(how: int, lasts_s: float) -> None:
     watch = WalkerWatch(30.0)
-    perhaps, surely = np.array([[0.5, -0.8, 0.2, PERHAPS]]), np.array([[4.0, 0.0, 0.2, SURELY]])
-    watch.take_echoes(perhaps, 0.0)
-    assert not watch.is_anybody_about(0.0)
-    watch.take_echoes(surely, 0.1)
+    watch.take_echoes(np.array([[0.5, -0.8, 0.2, how]]), 0.0)
+    assert len(watch.rows(lasts_s)) == 1 and not watch.is_anybody_about(lasts_s)
+    assert len(watch.rows(lasts_s + 0.2)) == 0
+
+
+def test_a_laser_that_saw_somebody_once_has_the_robot_reckon_with_him_at_once() -> None:
+    watch, now_s = watched([(2.5, 0.0)] * 3 + [(2.1, 0.0)], [(0.0, 0.0, 0.0)] * 4)
+    assert len(watch.rows(now_s)) == 1 and not watch.is_anybody_about(now_s) and len(watch.rows(now_s + 0.7)) == 0
+
+
+def test_who_is_perhaps_there_is_forgotten_while_another_is_remembered() -> None:
+    watch = WalkerWatch(30.0)
+    watch.take_echoes(np.array([[0.5, -0.8, 0.2, PERHAPS]]), 0.0)
+    watch.take_echoes(np.array([[4.0, 0.0, 0.2, SURELY]]), 0.1)
     assert len(watch.rows(0.1)) == 2 and len(watch.rows(1.1)) == 1
 
 

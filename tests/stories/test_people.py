@@ -38,6 +38,18 @@ def test_the_tail_does_not_swing_into_somebody_who_came_round_from_ahead(bearing
     assert touches(one) == []
 
 
+COMES_TO_THE_FLANK = [(120, 1.0, 1.8), (120, 1.4, 2.6), (150, 0.6, 2.6), (150, 1.4, 2.6), (180, 1.4, 3.4), (-120, 1.4, 1.8), (-150, 1.0, 2.6)]
+
+
+@pytest.mark.parametrize(("bearing_deg", "speed_mps", "comes_s"), COMES_TO_THE_FLANK)
+def test_who_comes_first_of_all_to_the_flank_of_a_robot_that_turns_round_is_heard_in_time(bearing_deg: int, speed_mps: float, comes_s: float) -> None:
+    """Nobody was seen before, and no laser sees him come: the tail stops for what the ring hears where all was free a moment ago."""
+    bearing, far_m = math.radians(bearing_deg), 0.9 + speed_mps * comes_s
+    way = np.array([math.cos(bearing), math.sin(bearing)])
+    walk = [(float(x), float(y)) for x, y in (far_m * way, -6.0 * way)]
+    assert touches(among("atrv2", (-5.0, math.copysign(0.8, bearing_deg)), speed_mps, walk, comes_s + 1.5)) == []
+
+
 @pytest.mark.parametrize(("bearing_deg", "speed_mps"), [(-55, 1.3), (-39, 1.0), (-39, 1.3), (8, 1.0), (39, 1.3), (55, 1.3)])
 def test_the_front_array_hears_who_comes_from_ahead_in_time(bearing_deg: int, speed_mps: float) -> None:
     bearing = math.radians(bearing_deg)
