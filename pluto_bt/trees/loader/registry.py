@@ -48,8 +48,8 @@ class NodeType:
 
     @property
     def is_ours(self) -> bool:
-        """True for what pluto_bt itself brings; a user's leaf may do what its ports do not tell."""
-        return self.builtin or bool(self.missing) or getattr(self.make, "__module__", "").startswith("pluto_bt.")
+        """True for what pluto_bt itself brings to missions; a user's leaf may do what its ports do not tell."""
+        return self.builtin or bool(self.missing) or getattr(self.make, "__module__", "").startswith(("pluto_bt.behaviours.", "pluto_bt.trees."))
 
 
 def name_problem(name: str) -> str:
