@@ -59,7 +59,7 @@ class PathDriver(MotionLeaf):
     def here(self, robot: Robot) -> Planar | Status:
         """Where the robot is; RUNNING while that is not known, FAILURE if it stays so."""
         around = robot.surroundings
-        if around.look(robot, self.now_s()):
+        if around.look(robot, self.now_s(), only_finely=True):
             self._blind_since_s = self._last_s
             return around.believed
         if self._last_s - self._blind_since_s >= WAITING["no-pose"]:

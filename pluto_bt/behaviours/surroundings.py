@@ -50,7 +50,6 @@ class Surroundings:
         self._is_empty = True
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
-        self._refreshed_s = -math.inf
         self._passers_by, self._walked = PassersBy(), WalkedGround(self.map.look_m)
         self._first_variance_m2 = math.inf  # of the believed position when the rectangle was set
         self._doubt_m = 0.0
@@ -92,13 +91,11 @@ class Surroundings:
         for grid in self._grids():
             grid.erase(self.robot[:2], 4.0 * CELLS * grid.cell_m, inside=True)
         self._walked.forget()
-        self._refreshed_s = -math.inf
 
     def forget_square(self, middle: Pair, side_m: float, *, inside: bool) -> None:
         """What was seen in a square round a point (dead reckoning), or outside of it, is not known any more."""
         for grid in self._grids():
             grid.erase(middle, side_m, inside=inside)
-        self._refreshed_s = -math.inf
 
     @property
     def is_empty(self) -> bool:
@@ -108,8 +105,12 @@ class Surroundings:
     def _grids(self) -> tuple[LocalMap, ...]:
         return (self.map,) if self.fine is None else (self.map, self.fine)
 
-    def look(self, robot: Robot, now_s: float) -> bool:
-        """Take what the robot has seen since the last look. False if it is not known where it is."""
+    def look(self, robot: Robot, now_s: float, only_finely: bool = False) -> bool:
+        """Take what the robot has seen since the last look. False if it is not known where it is.
+
+        Args:
+            only_finely: True if nobody will ask the coarse map for clearances, which are dear.
+        """
         self._watch_passers_by(robot, now_s)
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
         if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
@@ -134,9 +135,8 @@ class Surroundings:
                 for grid in self._grids():
                     grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, AGAIN_S if has_feet else 0.0)
                 self._note_walkers(view.scan, view.laser, view.tilt_rad)
-        if now_s - self._refreshed_s >= REFRESH_S:
-            self._refreshed_s = now_s
-            for grid in self._grids():
+        for grid in self._grids():
+            if now_s - grid.refreshed_s >= REFRESH_S and not (only_finely and grid is self.map):
                 grid.refresh(now_s)
         return True
 
@@ -211,7 +211,7 @@ class Surroundings:
         if (goal is None and self._has_reopened) or not self.map.reopen():
             return None
         self._has_reopened = True
-        self.map.refresh(self._refreshed_s)
+        self.map.refresh(self.map.refreshed_s)
         return self.find(goal)
 
     def _find(self, goal: Pair | None, rectangle: Rectangle | None) -> Way | None:

@@ -51,7 +51,8 @@ class LocalMap:
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
         self._shut: list[tuple[float, float, float, float]] = []  # x m, y m, radius m, when
-        self._window: Window | None = None  # where something changed since the last refresh
+        self.refreshed_s = -math.inf  # when `clearance` was brought up to date; long ago if that is due at once
+        self._window: Window | None = None  # where something changed since then
         self._has_low = False  # something was found to lie low, which is forgotten by itself wherever it is
         self.lay(middle)
 
@@ -196,10 +197,12 @@ class LocalMap:
             else:
                 grid[:] = blank
                 grid[square] = kept
+        self.refreshed_s = -math.inf
         self._changed(Window.around(i, j, side_m / self.cell_m if inside else CELLS))
 
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
+        self.refreshed_s = now_s
         if self._window is None:
             return
         keep, oldest_s = math.ceil(self.far_cells), self._oldest_s(now_s)
