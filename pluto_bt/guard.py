@@ -10,11 +10,11 @@ from pluto_bt.runtime.clock import NS, MonotonicClock, wait
 from pluto_bt.runtime.supervision import Part
 from pluto_bt.runtime.watchdog import Hung
 from pluto_bt.source import PlutoError
+from pluto_bt.trees.executive import MODULE_ERROR
 
 if TYPE_CHECKING:
     from pluto_bt.system import System
 
-MODULE_ERROR = "module-error"
 BASE_LOST_AFTER_S = 2.0
 MENDED_S = 1.5  # after so long a module that was started again is trusted, and the robot stands
 SLOW_S = 0.5
@@ -35,8 +35,7 @@ class Guard:
     def __init__(self, system: System) -> None:
         self._system = system
         self._newest_raw = system.board.reader("ATRV2/Drive/Raw")
-        self._down: set[str] = set()  # critical modules that failed and do not run again yet
-        self._mended_s: float | None = None  # when the last of them ran again, while the mission still waits
+        self._mended_s: float | None = None  # when a critical module that had failed ran again, while the mission still waits
         self.ended: End | None = None
 
     def end(self, reason: str, text: str) -> None:
@@ -50,7 +49,6 @@ class Guard:
         what = f'module "{part.module.name}" failed: {part.error}'
         self._system.say("error", MODULE_ERROR, part.module.name, what)
         if part.module.critical:
-            self._down.add(part.module.name)
             self._system.executive.core.pause(MODULE_ERROR)
             self._system.stop_robot("supervision")
         if is_final:
@@ -60,7 +58,6 @@ class Guard:
         """A module runs again."""
         self._system.say("info", "module-restarted", part.module.name, f'module "{part.module.name}" was started again')
         if part.module.critical:
-            self._down.discard(part.module.name)
             self._mended_s = self._system.clock.now_s()
 
     def hung(self, part: Part) -> None:
@@ -77,9 +74,13 @@ class Guard:
         raw, now_s = self._newest_raw(), self._system.clock.now_s()
         if now_s - (0.0 if raw is None else raw.written_s) > BASE_LOST_AFTER_S:
             self.end("base-lost", f"the base has sent no odometry for {BASE_LOST_AFTER_S:g} s")
-        if self._mended_s is not None and not self._down and now_s - self._mended_s >= MENDED_S:
+        if self._mended_s is not None and now_s - self._mended_s >= MENDED_S:
             self._mended_s = None
-            self._system.executive.core.resume_after(MODULE_ERROR)
+            self._system.executive.core.resume_after(MODULE_ERROR, self._is_well)
+
+    def _is_well(self) -> bool:
+        """True if every critical module runs and nobody holds the robot; asked by the executive in the moment of going on."""
+        return self._system.latch.held is None and all(part.state == "running" for part in self._system.parts if part.module.critical)
 
     # ------------------------------------------------------------------ faults that a world script asks for
 

@@ -77,7 +77,8 @@ class GatewayMissions:
             if op == "resume":
                 self._refuse_if_latched()
             if op == "pause" and self.state().state == PAUSED:
-                return  # it is as asked
+                core.pause(OPERATOR_STOP)  # it stands already; but now it does not go on by itself
+                return
             if self.state().state != OPS_OF_STATE[op]:
                 raise RefusedError("wrong-state", f"the mission is {self.state().state}; {op} needs one that is {OPS_OF_STATE[op]}")
             core.pause(OPERATOR_STOP) if op == "pause" else self._system.operator_resume()

@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import NamedTuple, Protocol
+from typing import Final, NamedTuple, Protocol
 
 from pluto_bt.trees.activity import ABORTED, IDLE, PAUSED, RUNNING, Activity
 from pluto_bt.trees.mission import Mission
+
+MODULE_ERROR: Final = "module-error"
+PASSING: Final = (MODULE_ERROR,)  # reasons of pauses that end by themselves; that of a person takes their place, and does not
 
 
 class Body(Protocol):
@@ -151,14 +154,15 @@ class Executive:
         """Let a paused mission go on where its tree stands; motion leaves command again when they are next ticked."""
         self._orders.append((self._resume, {PAUSED: RUNNING}))
 
-    def resume_after(self, reason: str) -> None:
-        """As `resume`, a step later, if it is for this reason that the mission waits. Thread-safe.
+    def resume_after(self, reason: str, may: Callable[[], bool]) -> None:
+        """As `resume`, a step later, if it is for this reason that the mission waits, nobody is at an errand, and it `may` then. Thread-safe.
 
         A step later because the stop that came with the pause may still be on its way, and no command overtakes a stop.
         """
 
         def act() -> None:
-            if self.mission is not None and self.mission.reason == reason:
+            is_waiting = self.mission is not None and self.mission.state == PAUSED and self.mission.reason == reason
+            if is_waiting and (self.errand is None or self.errand.is_over) and may():
                 self._resume()
 
         self._orders.append((lambda: self._later.append((act, {})), {}))
@@ -205,7 +209,9 @@ class Executive:
         self.note("pause", text=reason)
         if self.errand is not None:
             self._end(self.errand, reason)
-        if self.mission is not None and self.mission.state == RUNNING:
+        if self.mission is None or reason == self.mission.reason:
+            return
+        if self.mission.state == RUNNING or (self.mission.state == PAUSED and self.mission.reason in PASSING):
             self.mission.state, self.mission.reason = PAUSED, reason
             self._say("warning", reason, f"mission paused: {reason}")
 

@@ -10,8 +10,11 @@ from py_trees.common import Status
 from py_trees.ports import BehaviourWithPorts
 
 from pluto_bt.behaviours.leaf import NO_PORTS
+from pluto_bt.inputs.reading import Request, read_inputs
+from pluto_bt.runner import make_runner
 from pluto_bt.scenario import Play, Run
 from pluto_bt.source import InputError
+from pluto_bt.system import System
 from tests.shared_data import shared_file
 
 SQUARE = """<world name="square" seed="1">
@@ -172,6 +175,33 @@ def test_a_mission_without_a_second_try_goes_on_too_when_the_module_that_raised_
     assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
     assert run.said("module-restarted") and run.said("resumed")
     assert math.dist(run.final_pose[:2], (4.0, -2.0)) < 0.5
+
+
+@pytest.mark.parametrize("how", ["stop", "estop and release", "pause"])
+def test_who_stops_a_mission_that_waits_for_a_module_has_stopped_it(square: Any, how: str) -> None:
+    world = square('<at t="4"><fault device="module:drive" kind="raise" for="0.25"/></at>')
+    inputs = read_inputs(Request("patrol.xml", world=world, port=["goals=4,-2"]))
+    done: list[str] = []
+
+    def person(system: System) -> None:
+        if system.clock.now_s() < 4.6 or done:
+            return
+        mission = system.executive.core.mission
+        assert mission is not None and (mission.state, mission.reason) == ("paused", "module-error")
+        done.append(how)
+        if how == "pause":
+            system.executive.core.pause("operator-stop")
+        else:
+            system.operator_stop("anna")
+            if how == "estop and release":
+                system.latch.set("estop", "smoke")
+                system.latch.release("estop")
+
+    runner = make_runner(inputs, max_time_s=15.0, on_progress=person)
+    result = runner.run()
+    assert done and (result.result, result.reason) == ("STOPPED", "max-time")
+    still = [point.pose for point in runner.system.track.points if point.t_s > 7.0]
+    assert max(math.dist(pose[:2], still[0][:2]) for pose in still) < 0.01, "nobody has said that it may go on"
 
 
 def test_a_lost_base_ends_the_run(scenario: Play, square: Any) -> None:
