@@ -14,7 +14,7 @@ from estimation.scan_match import ScanStep
 from estimation.se2 import Pose2
 
 MOST_PAN_RAD = 1.6  # a laser that was panned farther sees too little of the same
-KEPT = 16  # scans, three seconds
+KEPT = 16  # scans; three seconds, if all of them are good
 KEY_WAY_M, KEY_TURN_RAD = 1.0, 0.5
 FAR_KEYS = 3.0  # after a gap scans are compared up to so many times that way
 LONGEST_GAP_S = 60.0  # and so long after one another: later the place may look different

@@ -151,7 +151,7 @@ class MotionCheck:
             if home is not None and not (is_good(home) or self._is_surely_elsewhere or is_odd(home, False, scan.is_crowded)):
                 self._renew(scan)  # that tells neither way: it waits on
                 return
-            self._is_elsewhere = home is not None and not is_good(home)
+            self._is_elsewhere = self._is_elsewhere and (self._is_surely_elsewhere if home is None else not is_good(home))
             self._weigh(scan, key, motion, match)
             self._looked_s = scan.at.stamp_s
             return

@@ -114,6 +114,7 @@ class CircleObject(MotionLeaf):
             if now_s - self._seen_s >= WAITING["no-pose"]:
                 return self.fail(*why_no_pose(robot))
             self.post(robot, CommandType.VELOCITY)
+            self._sent_s, self._standstill = -math.inf, Standstill(now_s)
             return self.wait(why_no_pose(robot)[1])
         self._seen_s = now_s
         for view in around.views:

@@ -155,7 +155,9 @@ class FollowRay(MotionLeaf):
         if trouble is not None:
             return trouble
         if not around.look(robot, now_s):
-            return self.wait("no pose")
+            if self._freeing is not None:
+                self.post(robot, CommandType.VELOCITY)  # it backs by its velocity, which no link holds back for want of a pose
+            return self.wait(why_no_pose(robot)[1])
         if self._freeing is not None:
             return self._free(robot, around, self._freeing)
         if self._goal is not None and is_near(around, self._goal):

@@ -114,6 +114,7 @@ class Surroundings:
         self._watch_passers_by(robot, now_s)
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
         if pose_of(robot) is None or not isinstance(dead, Pose) or not isinstance(believed, Pose):
+            self._has_run_into = False  # by the time a pose is back nobody knows where that was
             return False
         self.robot = (dead.pose[0], dead.pose[1], dead.pose[3])
         self.believed = (believed.pose[0], believed.pose[1], believed.pose[3])

@@ -22,6 +22,8 @@ def wrist_at(board: Blackboard | Snapshot, stamp_s: float) -> Pair | None:
     newest, sent = board.newest("wrist/state"), board.newest("wrist/command")
     if newest is None or not isinstance(state := newest.value, ActuatorState):
         return None
+    if stamp_s < state.stamp_s - SOON_S:
+        return None  # older than the history
     if stamp_s - state.stamp_s <= SOON_S:
         return state.position
     stands = max(map(abs, state.velocity)) < STILL_RADPS
