@@ -40,6 +40,10 @@ class MarkerGate:
             self.accepted_count += 1
         return refused
 
+    def forget(self) -> None:
+        """The car was carried: how far the next marker is from the last accepted one says nothing."""
+        self._last = None
+
     def _too_fast(self, stamp_s: float, x_m: float, y_m: float) -> str:
         if not (math.isfinite(x_m) and math.isfinite(y_m)):
             return TOO_FAST

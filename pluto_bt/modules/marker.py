@@ -10,7 +10,7 @@ import msgspec
 from msgspec import Meta
 
 from drivers.records import MarkerRecord
-from estimation.marker_gate import MarkerGate
+from estimation.marker_gate import BAD_HEADING, MarkerGate
 from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import MarkerState, Pose
 from pluto_bt.blackboard.poses import pose_at
@@ -39,7 +39,8 @@ class Marker:
     is the camera's, the heading is the estimate, pulled a little towards the camera's, else the gyro's drift would end long runs.
 
     The gate lets nonsense pass when there is nothing to compare it with: the first marker, or one after a long shadow. So an accepted
-    marker far from the estimate moves the pose only if the accepted one before was far as well.
+    marker far from the estimate moves the pose only if the accepted one before was far as well. And it refuses for ever whoever was carried
+    and turned: where several markers in a row, not one alone that may hang wrong, see the car turned by the same angle, they are right.
     """
 
     def __init__(self, context: Context) -> None:
@@ -53,6 +54,7 @@ class Marker:
         self._was_far = False
         self._say = context.say
         self._off_rad: deque[float] = deque(maxlen=JUDGED)  # heading of the last accepted markers less the estimate's
+        self._refused_rad: deque[tuple[int, float]] = deque(maxlen=JUDGED)  # marker and the same of those refused in a row for it
         self.gate = MarkerGate(p.min_quality, math.radians(p.max_heading_error_deg), p.max_speed_mps)
 
     def start(self, now_s: float) -> None:
@@ -73,8 +75,15 @@ class Marker:
         is_past = pose is None and newest is not None and r.stamp_s < newest.stamp_s
         pose = pose or newest
         heading_rad = self._start_rad if pose is None else pose.pose[3]
-        refused = TOO_OLD if is_past else self.gate.judge(r.stamp_s, (r.x_m, r.y_m, r.theta_rad), r.quality, heading_rad)
+        seen = (r.x_m, r.y_m, r.theta_rad)
+        refused = TOO_OLD if is_past else self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
+        if refused == BAD_HEADING and self._is_turned(r, heading_rad):
+            heading_rad, self._was_far = r.theta_rad, True  # the markers before confirm this one
+            self.gate.forget()
+            refused = self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
         self._state.put(MarkerState(r.stamp_s, r.marker, r.x_m, r.y_m, r.theta_rad, r.quality, refused, self.gate.accepted_count), now_s)
+        if not refused:
+            self._refused_rad.clear()
         if not refused and self._is_credible(r, pose):
             self._post(r, heading_rad, 0.0 if pose is None else pose.covariance[8])
 
@@ -86,6 +95,24 @@ class Marker:
         is_far = math.hypot(r.x_m - pose.pose[0], r.y_m - pose.pose[1]) > max(self._parameters.far_m, 3.0 * sigma_m)
         was_far, self._was_far = self._was_far, is_far
         return was_far or not is_far
+
+    def _is_turned(self, r: MarkerRecord, heading_rad: float) -> bool:
+        """True if the last readings, of more than one marker, all see the car turned away from the estimate by the same angle."""
+        off_rad = wrap_angle(r.theta_rad - heading_rad)
+        if not math.isfinite(off_rad):
+            return False
+        alike = math.radians(self._parameters.most_heading_bias_deg)
+        if any(abs(wrap_angle(off_rad - other_rad)) > alike for _, other_rad in self._refused_rad):
+            self._refused_rad.clear()
+        if r.marker not in {marker for marker, _ in self._refused_rad} or len(self._refused_rad) < JUDGED - 1:
+            self._refused_rad.append((r.marker, off_rad))
+        if len(self._refused_rad) < JUDGED or len({marker for marker, _ in self._refused_rad}) < 2:
+            return False
+        self._refused_rad.clear()
+        off_deg = math.degrees(off_rad)
+        text = f"several markers see the car {off_deg:+.0f} deg from where it was thought to point: somebody has turned it, and they are believed"
+        self._say("warning", "pose-jump", "marker", text)
+        return True
 
     def _bias_rad(self, off_rad: float) -> float:
         """What most of the last `JUDGED` markers agree upon against the gyro, rad; 0 while it is small, or they are too few."""

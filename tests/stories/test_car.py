@@ -151,6 +151,27 @@ def test_a_gyro_that_lies_is_found_out_by_the_markers(scenario: Play, corridor: 
     assert run.said("gyro-drift") or run.said("gyro-refused")
 
 
+CAR_PARK = """<world name="car park" seed="4"><wall id="rim">0,0 12,0 12,8 0,8 0,0</wall>
+<area id="mapped" kind="map">0.3,0.3 11.7,0.3 11.7,7.7 0.3,7.7</area>
+<marker id="1" x="2" y="2"/><marker id="2" x="6" y="2"/><marker id="3" x="10" y="2"/>
+<marker id="4" x="2" y="6"/><marker id="5" x="6" y="6"/><marker id="6" x="10" y="6"/>
+<robot platform="car" x="2" y="3" theta_deg="0"/><script><at t="5"><place id="robot" x="9" y="6" theta_deg="{theta_deg}"/></at></script></world>"""
+
+
+@pytest.mark.parametrize("theta_deg", [180, -120])
+def test_a_car_that_is_carried_off_and_turned_is_put_right_by_several_markers(scenario: Play, tmp_path: Path, theta_deg: int) -> None:
+    """The gate refuses each of them, for the gyro did not turn."""
+    (tmp_path / "w.xml").write_text(CAR_PARK.format(theta_deg=theta_deg), encoding="utf-8")
+    mission = tmp_path / "m.xml"
+    legs = "".join(f'<CarGoTo goal="{goal}" timeout_s="60"/>' for goal in ("6;4", "3;4"))
+    mission.write_text(f'<root BTCPP_format="4"><BehaviorTree ID="m"><Sequence>{legs}</Sequence></BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(tmp_path / "w.xml"), mission=str(mission))
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert run.said("pose-jump")
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.3
+    assert abs(math.remainder(run.final_pose[2] - run.estimated_pose[2], math.tau)) < math.radians(10.0)
+
+
 def test_markers_that_are_all_off_by_two_metres_are_told(scenario: Play, corridor: Path) -> None:
     script = '<script><at t="10"><fault device="marker" kind="jump" value="2"/></at></script>'
     corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
