@@ -101,7 +101,7 @@ def _run(args: argparse.Namespace) -> RunResult:
         print(warning.as_text(), file=sys.stderr)
     from pluto_bt.runner import make_runner  # heavy: only once there is something to run
 
-    has_gateway = args.realtime or doors.gateway is not None or doors.web is not None or doors.ssh is not None
+    has_gateway = args.realtime or doors.take_orders or doors.ssh is not None
     progress = _progress(sys.stderr if args.json else sys.stdout, args.watch)
     runner = make_runner(
         inputs, realtime=args.realtime, speed=speed or 1.0, max_time_s=max_time_s, trace_path=args.trace, record=args.record,

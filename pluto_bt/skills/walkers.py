@@ -80,16 +80,19 @@ class WalkerWatch:
         return self._rows[1]
 
     def _rows_at(self, now_s: float) -> Array:
-        self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
-        self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
+        self._forget_the_old(now_s)
         known = (*self._walkers, *self._perhaps)
         return np.array([one.row(now_s) for one in known]) if known else NOBODY
+
+    def _forget_the_old(self, now_s: float) -> None:
+        self._walkers = [one for one in self._walkers if now_s - one.walked_s < (self._memory_s if one.times >= SURE else IN_VIEW_S)]
+        self._perhaps = [one for one in self._perhaps if now_s - one.stamp_s < PERHAPS_S]
 
     def is_anybody_about(self, now_s: float) -> bool:
         """Whether somebody was surely seen or heard walking lately, or a moment ago perhaps, if a laser cannot tell."""
         if now_s - self._doubted_s < IN_VIEW_S:
             return True
-        self.rows(now_s)
+        self._forget_the_old(now_s)
         return any(one.times >= SURE for one in self._walkers) or len(self._perhaps) >= OFTEN
 
     def bodies(self, now_s: float) -> Array:
