@@ -12,10 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from pluto_bt.behaviours.jobs import JobLeaf
-from pluto_bt.behaviours.look_around import WristTour
+from pluto_bt.behaviours.look_around import LookAround
 from pluto_bt.behaviours.path_driver import PathDriver
 from pluto_bt.behaviours.paths import FindPath
 from pluto_bt.behaviours.plan_path import Planning
+from pluto_bt.behaviours.sweep_wrist import SweepWrist
 from pluto_bt.behaviours.wall_follow import WallFollow
 from pluto_bt.blackboard.messages import Event, Pose
 from pluto_bt.box_files import record_request
@@ -35,7 +36,7 @@ from pluto_bt.trees.activity import ABORTED, SUCCEEDED
 from pluto_bt.trees.checks import load_checked
 from pluto_bt.trees.journal import Journal
 
-USES_THE_MAP = (WristTour, FindPath, Planning, PathDriver)
+USES_THE_MAP = (LookAround, SweepWrist, FindPath, Planning, PathDriver)
 
 
 class Runner:

@@ -14,7 +14,7 @@ from pluto_bt.behaviours.goto import GoTo
 from pluto_bt.behaviours.investigate import CircleObject, FindObject
 from pluto_bt.behaviours.jobs import Explore, Investigate, MoveTo, Resume, SetRectangle
 from pluto_bt.behaviours.leaf import Leaf
-from pluto_bt.behaviours.look_around import LookAround, SweepWrist
+from pluto_bt.behaviours.look_around import LookAround
 from pluto_bt.behaviours.make_turn import MakeTurn
 from pluto_bt.behaviours.module_order import StartModule, StopModule
 from pluto_bt.behaviours.nav2 import NAV2_LEAVES
@@ -25,9 +25,11 @@ from pluto_bt.behaviours.plan_path import PlanPath
 from pluto_bt.behaviours.say import Say
 from pluto_bt.behaviours.set_pose import SetPose
 from pluto_bt.behaviours.stop import Release, Stop
+from pluto_bt.behaviours.sweep_wrist import SweepWrist
 from pluto_bt.behaviours.topic_compare import TopicCompare, WaitFor
 from pluto_bt.behaviours.velocity import DriveVelocity, HoldHeading
 from pluto_bt.behaviours.wall_follow import WallFollow
+from pluto_bt.behaviours.would_retry_help import WouldRetryHelp
 from pluto_bt.behaviours.wrist import PointWrist
 
 ACTIONS: Final[tuple[type[Leaf], ...]] = (
@@ -35,5 +37,7 @@ ACTIONS: Final[tuple[type[Leaf], ...]] = (
     Stop, Release, WallFollow, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase,
     TryTurn, ReadAlarms, SetPose, StartModule, StopModule, WaitFor, Say,
 )  # fmt: skip
-CONDITIONS: Final[tuple[type[Leaf], ...]] = (IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare)
+CONDITIONS: Final[tuple[type[Leaf], ...]] = (
+    IsAt, IsStuck, IsTilted, BumperPressed, BatteryAbove, PoseQualityAbove, InsideArea, TopicCompare, WouldRetryHelp,
+)  # fmt: skip
 LEAVES: Final = (*ACTIONS, *CONDITIONS, *NAV2_LEAVES)

@@ -14,11 +14,13 @@ from pluto_bt.blackboard.codes import CommandType
 from pluto_bt.blackboard.messages import LaserPose, LaserScan, Pose
 from pluto_bt.skills.follow import REACH_M, Aim, Search
 from pluto_bt.skills.follow import Follow as Skill
+from pluto_bt.skills.limits import STILL
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.pieces import pieces_of
 
 WIDEST_M: Final = {"person": 0.8, "nearest": 1.2}  # what is wider is not looked at
 POST_EVERY_S: Final = 0.3
+REFRESH_S: Final = 1.0  # of standing
 TOLERANCE_M: Final = 0.05
 FACE_PER_S: Final = 1.2  # turn rate for each radian that the target is off
 FACING_RAD: Final = math.radians(8.0)
@@ -50,6 +52,7 @@ class Follow(MotionLeaf):
         self._skill = Skill(float(self.get_input("distance_m")), self.max_speed_mps(robot), self.now_s())
         self._scan_s = self._next_post_s = -math.inf
         self._found_s: float | None = None
+        self._stand(robot)
         return None
 
     def initialise(self) -> None:
@@ -61,15 +64,18 @@ class Follow(MotionLeaf):
         """What happened during the pause is unknown: the target is looked for where it was."""
         self._skill.pause(self._gap_s)
         self._ticket, self._was_accepted, self._next_post_s = None, False, -math.inf
+        self._posted_s = self._last_s
 
     def follow(self, robot: Robot) -> Status:
         """See, decide, drive."""
-        trouble = None if self._ticket is None else self.chain_trouble(robot, self.chain_status(robot))
+        status = self.chain_status(robot)
+        trouble = self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble
         dead = robot.newest("Localization/Dead-Reckoning")
-        if not isinstance(dead, Pose) or robot.is_stale("Localization/Dead-Reckoning"):
-            return self.wait("waiting for dead reckoning")
+        if self._is_blind or not isinstance(dead, Pose) or robot.is_stale("Localization/Dead-Reckoning"):
+            self._skill.pause(self._gap_s)  # nobody has gone who cannot be seen
+            return self._stand(robot, "waiting for the laser" if self._is_blind else "waiting for dead reckoning")
         at: Planar = (dead.pose[0], dead.pose[1], dead.pose[3])
         self._look(robot, at)
         now_s = self.now_s()
@@ -77,7 +83,7 @@ class Follow(MotionLeaf):
         if state in TEXTS:
             return self.fail(state.value, TEXTS[state])
         if state is Search.LOOKING:
-            return self.wait("looking for something that moves")
+            return self._stand(robot, "looking for something that moves")
         self._found_s = self.elapsed_s if self._found_s is None else self._found_s
         if self.elapsed_s - self._found_s >= float(self.get_input("duration_s")):
             return self.succeed("followed")
@@ -94,6 +100,14 @@ class Follow(MotionLeaf):
         robot = self.robot
         if robot is not None and self._pan_rad != 0.0:
             self._turn_wrist(robot, 0.0)
+
+    def _stand(self, robot: Robot, text: str = "") -> Status:
+        """Told again and again, so that the chain tells what becomes of the sensors meanwhile."""
+        now_s = self.now_s()
+        if now_s >= self._next_post_s - 1e-6 or (self._ticket is not None and self._ticket.command.velocity != STILL):
+            self._next_post_s = now_s + REFRESH_S
+            self.post(robot, CommandType.VELOCITY)
+        return self.wait(text)
 
     def _point(self, robot: Robot, bearing_rad: float) -> None:
         """Turn the laser after a target that comes near the edge of its field, no farther than needed: on the other side somebody may come, and the

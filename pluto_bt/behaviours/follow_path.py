@@ -39,7 +39,6 @@ class FollowPath(ActionLeaf, PathDriver):
     def begin(self, robot: Robot) -> Status | None:
         """Look at the path; the rest needs a pose."""
         self.tolerance_m = float(self.get_input("tolerance_m"))
-        self._blind_since_s = self._last_s
         self._taken: MapPath | None = None
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)

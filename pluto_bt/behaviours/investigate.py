@@ -10,7 +10,6 @@ from py_trees.common import Status
 from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.reasons import WAITING
 from pluto_bt.behaviours.robot import Robot, why_no_pose
 from pluto_bt.behaviours.standstill import Standstill
 from pluto_bt.behaviours.surroundings import Surroundings
@@ -96,12 +95,11 @@ class CircleObject(MotionLeaf):
         self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
         self._has_turned_back = False
         self._pointed_rad = math.inf
-        self._seen_s = self.now_s()
         return None
 
     def resume(self, robot: Robot) -> None:
         """The next step posts anyway."""
-        self._sent_s, self._standstill, self._seen_s = -math.inf, Standstill(self.now_s()), self.now_s()
+        self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
 
     def follow(self, robot: Robot) -> Status:
         """One step along the circle."""
@@ -111,12 +109,9 @@ class CircleObject(MotionLeaf):
         if trouble is not None or seen is None:
             return trouble or self.fail("no-object", "the object is forgotten")
         if not around.look(robot, now_s):
-            if now_s - self._seen_s >= WAITING["no-pose"]:
-                return self.fail(*why_no_pose(robot))
             self.post(robot, CommandType.VELOCITY)
             self._sent_s, self._standstill = -math.inf, Standstill(now_s)
-            return self.wait(why_no_pose(robot)[1])
-        self._seen_s = now_s
+            return self.placeless(robot)
         for view in around.views:
             seen.see(view)
         turns = self._round.go(around.robot, seen.thing)

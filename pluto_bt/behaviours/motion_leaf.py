@@ -15,14 +15,14 @@ from py_trees.common import Status
 
 from pluto_bt.behaviours.leaf import RobotLeaf
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.reasons import WAITING, sentence
-from pluto_bt.behaviours.robot import Robot, Ticket
+from pluto_bt.behaviours.reasons import BLIND, SENSORS, WAITING, sentence
+from pluto_bt.behaviours.robot import Robot, Ticket, why_no_pose
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
 # a sensor on the brink is well for a moment now and then, and held wheels try again every second: these words must stay away for CLEAR_S
-FLICKERING: Final = ("laser-stale", "sonar-stale", "bumper-stale", "odometry-stale", "odometry-frozen", "no-pose")
+FLICKERING: Final = (*SENSORS, "odometry-stale", "odometry-frozen", "no-pose")
 CLEAR_S: Final = 2.0
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
@@ -56,7 +56,9 @@ class MotionLeaf(RobotLeaf):
         self._ticket: Ticket | None = None
         self._was_accepted = False
         self._heard: FVectorState | None = None
+        self._is_blind = False  # by the last status of our command: the laser that was asked for cannot be trusted
         self._word, self._word_since_s, self._word_seen_s = "", 0.0, -math.inf
+        self._placeless_since_s = self._placeless_s = -math.inf
         self._start_s = self._last_s = self._posted_s = self.now_s()
         self._timeout_s = float(self.get_input("timeout_s"))
 
@@ -148,7 +150,8 @@ class MotionLeaf(RobotLeaf):
         if self._ticket is None:
             return None
         status = self._heard = robot.status(self._ticket)
-        self._was_accepted = self._was_accepted or status is not None
+        if status is not None:
+            self._was_accepted, self._is_blind = True, status.reason in BLIND
         return status
 
     def chain_trouble(self, robot: Robot, status: FVectorState | None) -> Status | None:
@@ -168,6 +171,16 @@ class MotionLeaf(RobotLeaf):
         if trouble is None and word == "bumper" and _is_released(robot):
             self.resume(robot)  # the drive's latch opens with a new command
         return trouble
+
+    def placeless(self, robot: Robot) -> Status:
+        """One tick in which nobody knows where the robot is: it waits with the pose's own reason, and fails with it after the usual time."""
+        if self._placeless_s < self._last_s - self._gap_s:
+            self._placeless_since_s = self._last_s
+        self._placeless_s = self._last_s
+        word, text = why_no_pose(robot)
+        if self._last_s - self._placeless_since_s >= WAITING[word]:
+            return self.fail(word, text)
+        return self.wait(f"{word}: {text}")
 
     def _replaced(self, robot: Robot) -> Status:
         now = robot.newest("motion/status")

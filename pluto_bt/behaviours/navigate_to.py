@@ -46,7 +46,7 @@ class NavigateTo(PathDriver):
             return self.fail("no-path", str(error.args[0]))
         self.tolerance_m = float(self.get_input("tolerance_m"))
         self._has_path, self._stuck_count = False, 0
-        self._blind_since_s = self._looked_s = self._planned_s = self._last_s
+        self._looked_s = self._planned_s = self._last_s
         self._blocked_since_s: float | None = None
         self._freeing: FreeItself | None = None
         self._freed_s = -math.inf

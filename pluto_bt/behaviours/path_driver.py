@@ -10,8 +10,7 @@ from py_trees.common import Status
 
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
-from pluto_bt.behaviours.reasons import WAITING
-from pluto_bt.behaviours.robot import Robot, why_no_pose
+from pluto_bt.behaviours.robot import Robot
 from pluto_bt.blackboard.codes import CommandType, GotoStatus, LinkStatus
 from pluto_bt.blackboard.messages import FVectorState
 from pluto_bt.skills.outline import Planar
@@ -60,14 +59,11 @@ class PathDriver(MotionLeaf):
         """Where the robot is; RUNNING while that is not known, FAILURE if it stays so."""
         around = robot.surroundings
         if around.look(robot, self.now_s(), only_finely=True):
-            self._blind_since_s = self._last_s
             return around.believed
-        if self._last_s - self._blind_since_s >= WAITING["no-pose"]:
-            return self.fail(*why_no_pose(robot))
         if self._moves:
             self.post(robot, CommandType.VELOCITY)
             self._point = None
-        return self.wait("waiting for a pose")
+        return self.placeless(robot)
 
     def drive(self, robot: Robot, here: Planar) -> Status:
         """One step along the path: SUCCESS at its end, FAILURE `stuck` where it cannot get on."""

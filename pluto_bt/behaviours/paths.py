@@ -64,13 +64,15 @@ class FindPath(RobotLeaf):
 
     def initialise(self) -> None:
         """Time counts from the first tick."""
-        self._start_s, self._next_s = self.now_s(), -math.inf
+        self._start_s = self._placed_s = self.now_s()
+        self._next_s = -math.inf
 
     def act(self, robot: Robot) -> Status:
         """Answers at once, unless it has to wait: for a pose, or for somebody who is in the way."""
         around, now_s, goal = robot.surroundings, self.now_s(), goal_of(self)
         if not around.look(robot, now_s):
             return self._wait_for_a_pose(robot, now_s)
+        self._placed_s = now_s
         if now_s < self._next_s:
             return self.wait(PEOPLE)
         if self._next_s == -math.inf:
@@ -94,7 +96,7 @@ class FindPath(RobotLeaf):
 
     def _wait_for_a_pose(self, robot: Robot, now_s: float) -> Status:
         reason, text = why_no_pose(robot)
-        return self.fail(reason, text) if now_s - self._start_s >= WAITING["no-pose"] else self.wait(text)
+        return self.fail(reason, text) if now_s - self._placed_s >= WAITING[reason] else self.wait(f"{reason}: {text}")
 
     def _awaits_somebody(self, around: Surroundings, goal: Pair, now_s: float) -> bool:
         """Where no way is left: True while somebody in it may walk on. After `PATIENCE_S` the robot takes the way up to him, if there is one."""
@@ -157,7 +159,7 @@ class FollowRay(MotionLeaf):
         if not around.look(robot, now_s):
             if self._freeing is not None:
                 self.post(robot, CommandType.VELOCITY)  # it backs by its velocity, which no link holds back for want of a pose
-            return self.wait(why_no_pose(robot)[1])
+            return self.placeless(robot)
         if self._freeing is not None:
             return self._free(robot, around, self._freeing)
         if self._goal is not None and is_near(around, self._goal):

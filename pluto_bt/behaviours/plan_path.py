@@ -48,8 +48,8 @@ class Planning(RobotLeaf):
         robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         if robot.surroundings.look(robot, self.now_s(), only_finely=True):
             return self.plan(robot)
-        is_over = self.now_s() - self._start_s >= WAITING["no-pose"]
-        return self.fail(*why_no_pose(robot)) if is_over else self.wait("waiting for a pose")
+        word, text = why_no_pose(robot)
+        return self.fail(word, text) if self.now_s() - self._start_s >= WAITING[word] else self.wait(f"{word}: {text}")
 
     def found_place(self, port: str, robot: Robot) -> Destination | None:
         """The place that a port names, as it lies on the map; None if the port has none. Raises LookupError for a name the map does not know."""

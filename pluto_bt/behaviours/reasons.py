@@ -10,10 +10,11 @@ from typing import Final, NamedTuple
 
 
 class Reason(NamedTuple):
-    """What a word means, and what a person can do."""
+    """What a word means, what a person can do, and whether the same attempt made once more may come out otherwise."""
 
     meaning: str
     cure: str
+    retry: bool = False
 
 
 REASONS: Final[dict[str, Reason]] = {
@@ -31,22 +32,22 @@ REASONS: Final[dict[str, Reason]] = {
     ),
     # of leaves
     "bad-command": Reason("a link of the chain refused the command", "see the status text of motion, avoidance and drive"),
-    "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command"),
+    "bumper": Reason("a bumper is pressed", "drive back with DriveVelocity until it is released, then send a new command", True),
     "bumper-stale": Reason("the bumpers deliver nothing any more", "check the bumpers and their cable"),
     "cancelled": Reason("another command took the place of this leaf's command", "let only one motion leaf be active at a time"),
     "chain-stopped": Reason("a link of the command chain is stopped or takes no commands", "start the modules motion, avoid, drive and filter"),
     "command-timeout": Reason("drive had no new command for 4 s and stopped", "send commands more often, or use a leaf that refreshes its command"),
     "estop": Reason("the emergency stop is latched", "see to the cause, release the stop, then resume the mission or command anew"),
     "executive-silent": Reason("the executive has stopped working, so nothing may move", "look at the leaf or module named in the events"),
-    "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it"),
+    "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it", True),
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
     "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose, then go on"),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
     "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
     "no-input": Reason("a port that the leaf needs has no value on this way", "write its entry on every way that leads there, see the message"),
-    "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object"),
-    "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map"),
+    "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object", True),
+    "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map", True),
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
     "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
     "no-wall": Reason("wall follow sees no wall within reach, or none with room beside it", "bring the robot nearer to a wall"),
@@ -58,23 +59,27 @@ REASONS: Final[dict[str, Reason]] = {
     "outside-rectangle": Reason("the goal or the start is outside the rectangle", "choose a goal inside, or set another rectangle"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
     "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
-    "stuck": Reason("the robot gets no farther towards its goal or along its wall", "choose a goal with a clear way, or free it by hand"),
-    "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near"),
+    "stuck": Reason("the robot gets no farther towards its goal or along its wall", "choose a goal with a clear way, or free it by hand", True),
+    "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near", True),
     "tilted": Reason("the robot leans farther than the platform allows", "bring it to level ground"),
-    "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or see in the message what it waited for"),
-    "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards"),
+    "timeout": Reason("the leaf's time was over", "give it more time (timeout_s), or see in the message what it waited for", True),
+    "unseen": Reason("the way leads where no sensor ever looked, and there the robot creeps", "let it look first: turn, or drive forwards", True),
     "wall-lost": Reason("the wall that was followed is not there any more", "look what became of it, then start again near a wall"),
-    "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass"),
+    "walker": Reason("somebody walks near the way, or may do so where no sensor looks, and the robot creeps or waits", "let them pass", True),
+    "wrist-stale": Reason("the wrist says nothing, so nobody knows where the laser looks", "check the wrist and its cable, or choose avoid=sonar"),
     "wrong-state": Reason("the mission does not own the command inbox now", "give the lease back, or start motion again"),
 }
+
+BLIND: Final = ("laser-fatal", "laser-stale", "wrist-stale")  # the laser shows nothing that can be used
+SENSORS: Final = ("laser-stale", "wrist-stale", "sonar-stale", "bumper-stale")
+OUTAGE_S: Final = 5.0  # a sensor that delivers again after so long ends no mission
+SETTLE_S: Final = 1.5  # … so much longer a leaf waits: till who delivers again has shown two scans in time, and is believed
 
 WAITING: Final[dict[str, float]] = {
     # word → seconds for which a motion leaf lets the chain wait before it fails with that word
     "bumper": 4.0,  # who bumped into the robot goes on
-    "bumper-stale": 5.0,
+    **dict.fromkeys(SENSORS, OUTAGE_S + SETTLE_S),
     "laser-fatal": 30.0,  # the reboot takes about 20 s
-    "laser-stale": 5.0,
-    "sonar-stale": 5.0,
     "no-pose": 3.0,
     "lost": 3.0,
     "no-wall": 3.0,
@@ -90,3 +95,9 @@ def sentence(word: str) -> str:
     """What the word means, or the word itself for one from a leaf of the user's own."""
     reason = REASONS.get(word)
     return word if reason is None else reason.meaning
+
+
+def may_pass(word: str) -> bool:
+    """Whether a second try may help; of a word that is not in the list nobody knows, so it is worth one."""
+    reason = REASONS.get(word)
+    return reason is None or reason.retry

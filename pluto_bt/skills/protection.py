@@ -37,12 +37,14 @@ class Protection:
         if not avoidance & Avoidance.LASER or self._sight.laser is None:
             return 1.0, ALL_WELL
         fault = self._sight.laser_fault(now_s)
-        if fault.code is LinkStatus.LASER_FATAL or (fault != ALL_WELL and twist != STILL):
+        if fault.code is LinkStatus.LASER_FATAL:
             return 0.0, fault
+        if dead is None:  # without it no scan is looked at
+            fault = Verdict(LinkStatus.LASER_SLOW_STOP, reasons.NO_POSE, "without dead reckoning it is not known where the obstacles are now")
+        if dead is None or fault != ALL_WELL:  # who stands as he was told is not slowed, but who waits for the laser wants to hear of it
+            return (1.0, fault._replace(code=LinkStatus.NORMAL)) if twist == STILL else (0.0, fault)
         if twist == STILL:
             return 1.0, ALL_WELL
-        if dead is None:
-            return 0.0, Verdict(LinkStatus.LASER_SLOW_STOP, reasons.NO_POSE, "without dead reckoning it is not known where the obstacles are now")
         share, verdict = self.clear_share(self._sight.points(dead, True, False, now_s), twist, now)
         blind_mps = self._sight.parameters.blind_speed_mps
         if twist[0] < -blind_mps and not self._sight.sees_behind(bool(avoidance & Avoidance.SONAR)) and share > blind_mps / -twist[0]:

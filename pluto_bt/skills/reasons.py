@@ -29,6 +29,7 @@ STUCK = "stuck"
 UNSEEN = "unseen"
 WALL_LOST = "wall-lost"
 WALKER = "walker"
+WRIST_STALE = "wrist-stale"
 
 CHAIN_REASONS: dict[str, str] = {
     BAD_COMMAND: "the link does not know these cmdFlags, or a number of the command is missing or not finite; zero velocity",
@@ -58,4 +59,5 @@ CHAIN_REASONS: dict[str, str] = {
     UNSEEN: "the way leads where nothing was ever seen; there the robot creeps",
     WALL_LOST: "the wall that was followed is not there any more",
     WALKER: "somebody walks near the way, or may do so out of view; the robot creeps there, or waits",
+    WRIST_STALE: "the wrist says nothing, so nobody knows where the laser looks",
 }

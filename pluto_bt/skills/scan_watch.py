@@ -67,7 +67,7 @@ class ScanWatch:
     def verdict(self, now_s: float) -> Verdict:
         """Why the laser cannot be trusted now; ALL_WELL if it can."""
         if self._last is not None and now_s - self._last.stamp_s > self._stale_s and self._fault.code != LinkStatus.LASER_FATAL:
-            self._fault = _bad(f"the newest scan was taken {now_s - self._last.stamp_s:.2f} s ago, {self._stale_s:.2f} s are allowed")
+            self._fault = _bad(f"the newest scan is older than {self._stale_s:.2f} s")
             self._good_in_a_row = 0
         return self._fault
 
@@ -81,7 +81,7 @@ class ScanWatch:
             share = 1.0 - n_usable / max(1, len(ranges))
             return _bad(f"{share:.0%} of the beams give no usable number, {self._holes:.0%} are allowed")
         if laser is None:
-            return _bad(NO_ANGLE) if lacks == "wrist" else Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
+            return _bad(NO_ANGLE, word=reasons.WRIST_STALE) if lacks == "wrist" else Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
         half = len(ranges) // 2
         for which, part in enumerate((slice(None, half), slice(half, None))):
             if self._is_frozen(which, ranges, part, laser):

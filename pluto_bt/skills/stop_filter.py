@@ -129,10 +129,10 @@ class StopFilter:
         p, raw = self.parameters, senses.raw
         wheels = ALL_WELL if self._wheels is None or raw is None else self._wheels.step(raw, self.out, now_s)
         if senses.executive_age_s > p.executive_silent_s:
-            return Verdict(LinkStatus.NORMAL, reasons.EXECUTIVE_SILENT, f"the executive has done nothing for {senses.executive_age_s:.2f} s")
+            return Verdict(LinkStatus.NORMAL, reasons.EXECUTIVE_SILENT, f"the executive has done nothing for more than {p.executive_silent_s:g} s")
         if raw is None or now_s - raw.stamp_s > p.odometry_stale_s:
-            age = "no odometry at all" if raw is None else f"the newest odometry is {now_s - raw.stamp_s:.2f} s old"
-            return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_STALE, f"{age}, {p.odometry_stale_s:g} s are allowed")
+            text = "no odometry at all" if raw is None else f"the newest odometry is older than {p.odometry_stale_s:g} s"
+            return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_STALE, text)
         bumper = senses.bumper
         if self._has_bumpers and (bumper is None or now_s - bumper.stamp_s > p.bumper_stale_s):
             return Verdict(LinkStatus.NORMAL, reasons.BUMPER_STALE, f"no bumper reading younger than {p.bumper_stale_s:g} s")

@@ -15,7 +15,7 @@ from pluto_bt.record.entries import LINKS, Link
 from pluto_bt.record.trail import Trail, Trouble
 from pluto_bt.skills import reasons
 from pluto_bt.trees.contracts import CONTRACT
-from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, OF_WAITING, cure, meaning, rank
+from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, OF_WAITING, WRITERS, cure, meaning, rank
 
 LOCALISATION: Final = "localisation"
 ENDED_BY_ORDER: Final = ("aborted", reasons.STOPPED)  # of a mission
@@ -140,14 +140,17 @@ def _leaf_error(view: View) -> Cause | None:
 
 def _module(view: View) -> Cause | None:
     """A module of the chain that does not run."""
-    modules = view.trail.situation.modules
-    for name in CHAIN_MODULES:
-        if name in modules:
-            trouble = modules[name]
-            code = "hung" if trouble.startswith("hung") else "module-stopped" if trouble == "stopped" else "module-error"
-            unblock = f"`pluto module start {name}`" if code == "module-stopped" else ""
-            return _cause("module", code, f'module "{name}" is {trouble}', _since(view, f"module/{name}"), unblock=unblock)
-    return None
+    return next((cause for name in CHAIN_MODULES if (cause := _stopped(view, name)) is not None), None)
+
+
+def _stopped(view: View, name: str) -> Cause | None:
+    """A module, if it does not run."""
+    trouble = view.trail.situation.modules.get(name)
+    if trouble is None:
+        return None
+    code = "hung" if trouble.startswith("hung") else "module-stopped" if trouble == "stopped" else "module-error"
+    unblock = f"`pluto module start {name}`" if code == "module-stopped" else ""
+    return _cause("module", code, f'module "{name}" is {trouble}', _since(view, f"module/{name}"), unblock=unblock)
 
 
 def _sensor(view: View) -> Cause | None:
@@ -167,6 +170,8 @@ def _sensor(view: View) -> Cause | None:
     trouble = complaints[ranked[0]][1]
     word = words[ranked[0]]
     device, topic = OF_SENSOR[word]
+    if topic in WRITERS and (reader := _stopped(view, WRITERS[topic])) is not None:
+        return reader  # the device may be well: nobody listens to it
     text = trouble.link.text or meaning(word)
     return _cause("sensor", word, f"{device}: {text}", trouble.since_ns / 1e9, _age(view, topic))
 

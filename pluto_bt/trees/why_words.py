@@ -6,6 +6,7 @@ from typing import Final
 
 from pluto_bt.behaviours.reasons import REASONS
 from pluto_bt.blackboard.codes import LinkStatus
+from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.skills import reasons
 from pluto_bt.skills.reasons import CHAIN_REASONS
 
@@ -13,8 +14,8 @@ ODOMETRY: Final = "ATRV2/Drive/Raw"
 WHEEL_SLIP: Final = "wheel-slip"
 OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.LASER_STALE: ("laser", "sick/scan"), reasons.LASER_FATAL: ("laser", "sick/scan"), reasons.LASER: ("laser", "sick/scan"),
-    reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"), reasons.BUMPER: ("bumpers", "ATRV2/Bumper"),
-    reasons.BUMPER_STALE: ("bumpers", "ATRV2/Bumper"),
+    reasons.WRIST_STALE: ("wrist", "wrist/state"), reasons.SONAR_STALE: ("sonar", "ATRV2/Sonar"), reasons.SONAR: ("sonar", "ATRV2/Sonar"),
+    reasons.BUMPER: ("bumpers", "ATRV2/Bumper"), reasons.BUMPER_STALE: ("bumpers", "ATRV2/Bumper"),
     reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
     reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
     reasons.WALKER: ("people", ""), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
@@ -22,8 +23,9 @@ OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
 }  # fmt: skip
+WRITERS: Final = {topic.name: topic.writer for topic in TOPICS}
 BROKEN: Final = (  # devices
-    reasons.LASER_FATAL, reasons.LASER_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN,
+    reasons.LASER_FATAL, reasons.LASER_STALE, reasons.WRIST_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN,
     reasons.BUMPER, reasons.BUMPER_STALE,
 )  # fmt: skip
 OF_THE_BASE: Final = (reasons.ODOMETRY_STALE, reasons.NO_POSE, reasons.SONAR_STALE, reasons.BUMPER_STALE, "base-lost")  # while odometry is stale
