@@ -215,8 +215,11 @@ def fault_cases() -> str:
 def reasons() -> str:
     """The reasons of leaves."""
     of_leaves = {word: reason for word, reason in REASONS.items() if word not in RUN_REASONS or word in WAITING}
-    rows = ((f"`{word}`", reason.meaning, f"{WAITING[word]:g} s" if word in WAITING else "–", reason.cure) for word, reason in of_leaves.items())
-    return table(("reason", "meaning", "waits", "cure"), rows)
+    rows = (
+        (f"`{word}`", reason.meaning, f"{WAITING[word]:g} s" if word in WAITING else "–", "may help" if reason.retry else "–", reason.cure)
+        for word, reason in of_leaves.items()
+    )
+    return table(("reason", "meaning", "waits", "another try", "cure"), rows)
 
 
 def chain_reasons() -> str:

@@ -8,7 +8,7 @@ from typing import Final
 
 from py_trees.common import Status
 
-from pluto_bt.behaviours.motion_leaf import MOTION_OUTPUTS, MotionLeaf
+from pluto_bt.behaviours.motion_leaf import MOTION_INPUTS, MOTION_OUTPUTS, MotionLeaf
 from pluto_bt.behaviours.paths import SIDES
 from pluto_bt.behaviours.ports import Port
 from pluto_bt.behaviours.robot import Robot
@@ -32,12 +32,12 @@ class LookAround(MotionLeaf):
         "side": Port(str, False, "where to look; `none` = only ahead", "both", choices=SIDES),
         "pan_deg": Port(float, False, "how far to the sides, at most as far as the wrist goes", 55.0, unit="deg", ge=0.0, le=180.0),
         "tilt_deg": Port(float, False, "how far down", 10.0, unit="deg", ge=0.0, le=90.0),
-        "timeout_s": Port(float, False, "fails with `timeout` after so long", math.inf, unit="s", ge=0.0),
+        **MOTION_INPUTS,
     }
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
     def avoidance(self) -> str:
-        """It looks with the laser, so it asks for it."""
+        """It stands and looks: for the laser alone, whatever `avoid` says."""
         return "laser"
 
     def initialise(self) -> None:
