@@ -73,9 +73,9 @@ class Follow(MotionLeaf):
         if trouble is not None:
             return trouble
         dead = robot.newest("Localization/Dead-Reckoning")
-        if self._is_blind or not isinstance(dead, Pose) or robot.is_stale("Localization/Dead-Reckoning"):
+        if self.is_blind or not isinstance(dead, Pose) or robot.is_stale("Localization/Dead-Reckoning"):
             self._skill.pause(self._gap_s)  # nobody has gone who cannot be seen
-            return self._stand(robot, "waiting for the laser" if self._is_blind else "waiting for dead reckoning")
+            return self._stand(robot, "waiting for the laser" if self.is_blind else "waiting for dead reckoning")
         at: Planar = (dead.pose[0], dead.pose[1], dead.pose[3])
         self._look(robot, at)
         now_s = self.now_s()

@@ -44,6 +44,7 @@ class LookAround(MotionLeaf):
         """Nothing is pointed yet."""
         super().initialise()
         self._tour: WristTour | None = None
+        self._is_over = False
 
     def begin(self, robot: Robot) -> Status | None:
         """Command the robot to stand."""
@@ -64,10 +65,13 @@ class LookAround(MotionLeaf):
             if self._moves_on(robot) and self._last_s - self._begun_s < REST_S:
                 return self.wait("coming to rest")
             self._tour = WristTour(self._targets(robot), self.now_s())
-        if self._is_blind:
+        if self.is_blind:
             self._tour.pause(self.now_s(), self._gap_s)
             return self.wait("waiting for the laser")
-        return self.succeed("looked around") if self._tour.go_on(robot, self.now_s()) else self.wait("looking around")
+        self._is_over = self._is_over or self._tour.go_on(robot, self.now_s())
+        if not self._is_over or self._held:  # who is held back here is so wherever he drives next
+            return self.wait("looking around")
+        return self.succeed("looked around")
 
     def resume(self, robot: Robot) -> None:
         """Stand again; the look goes on."""

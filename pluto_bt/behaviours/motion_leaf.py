@@ -56,7 +56,7 @@ class MotionLeaf(RobotLeaf):
         self._ticket: Ticket | None = None
         self._was_accepted = False
         self._heard: FVectorState | None = None
-        self._is_blind = False  # by the last status of our command: the laser that was asked for cannot be trusted
+        self._held = ""  # the word for which, by the last status of our command, the chain holds the robot back
         self._word, self._word_since_s, self._word_seen_s = "", 0.0, -math.inf
         self._placeless_since_s = self._placeless_s = -math.inf
         self._start_s = self._last_s = self._posted_s = self.now_s()
@@ -151,7 +151,7 @@ class MotionLeaf(RobotLeaf):
             return None
         status = self._heard = robot.status(self._ticket)
         if status is not None:
-            self._was_accepted, self._is_blind = True, status.reason in BLIND
+            self._was_accepted, self._held = True, _waiting_word(status)
         return status
 
     def chain_trouble(self, robot: Robot, status: FVectorState | None) -> Status | None:
@@ -166,11 +166,15 @@ class MotionLeaf(RobotLeaf):
             return None
         if status.reason == "bad-command":
             return self.fail("bad-command", status.text)
-        word = _waiting_word(status)
-        trouble = self._patience(word, status.text)
-        if trouble is None and word == "bumper" and _is_released(robot):
+        trouble = self._patience(self._held, status.text)
+        if trouble is None and self._held == "bumper" and _is_released(robot):
             self.resume(robot)  # the drive's latch opens with a new command
         return trouble
+
+    @property
+    def is_blind(self) -> bool:
+        """True while the laser that the command asks for cannot be trusted."""
+        return self._held in BLIND
 
     def placeless(self, robot: Robot) -> Status:
         """One tick in which nobody knows where the robot is: it waits with the pose's own reason, and fails with it after the usual time."""
