@@ -74,7 +74,7 @@ CASES: tuple[FaultCase, ...] = (
               "stop filter: commanded wheels that count nothing; tries again every second"),
     FaultCase("base 300 ms late", fault("base", "late", 'delay="0.3"'), "FAILURE odometry-stale", 0.5, "odometry-stale",
               "stop filter and avoidance: the odometry does not reach to where the scans were taken"),
-    FaultCase("base blocked", fault("base", "blocked"), "FAILURE stuck", 0.5, "odometry-frozen", "as above; goto gives up"),
+    FaultCase("base blocked", fault("base", "blocked"), "FAILURE odometry-frozen", 0.5, "odometry-frozen", "as above"),
     FaultCase("full wheel slip", fault("base", "slip"), "FAILURE stuck", GOES_ON, "wheel-slip",
               "cross-check: the laser sees no way; it is believed, so goto sees that it comes no nearer"),
     FaultCase("a little wheel slip", fault("base", "slip", 'value="0.3"'), "SUCCESS", GOES_ON, "wheel-slip",

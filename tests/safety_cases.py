@@ -116,5 +116,5 @@ CAUSES: tuple[Cause, ...] = (
           fault("leaf:drive", "raise")),
     Cause("a leaf or module hangs", "the watchdog; in lockstep a scripted hang at once", lambda robot: THREADS_LIMIT_S, 1.1, "drive stopped",
           "STOPPED hung", NEW_MISSION, fault("leaf:drive", "hang")),
-    Cause("the run's time is over (`--max-time`), Ctrl-C", "the run", AT_ONCE, 1.1, "drive stopped", "STOPPED max-time", NEW_MISSION, from_s=12.0),
+    Cause("the run's time is over (`--max-time`), Ctrl-C", "the run", AT_ONCE, 1.1, "drive stopped", "STOPPED max-time", NEW_MISSION, from_s=14.0),
 )  # fmt: skip

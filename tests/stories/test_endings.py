@@ -36,7 +36,8 @@ FAULTS = {  # what breaks for ever → the word with which it ends, and for how 
     "avoidance gone": (fault("module:avoid", "off"), "chain-stopped", 0.0), "wrist silent": (fault("wrist", "off"), "wrist-stale", 1.0),
     "kidnapped": ('<place id="pluto" x="21" y="11.5" theta_deg="130"/>', "lost", 2.0),
 }  # fmt: skip
-AT_REST_TOO = ("laser off", "laser stuck", "laser NaN", "laser 400 ms late", "wrist silent", "bumper stuck", "bumpers off", "no localisation", "kidnapped")
+AT_REST_TOO = ("laser off", "laser stuck", "laser NaN", "laser 400 ms late", "wrist silent", "bumper stuck", "bumpers off", "no localisation",
+               "kidnapped")  # fmt: skip
 CASES = [
     *((job, name, DRIVING_S) for job in ("moveto", "explore") for name in FAULTS),
     *(("moveto", name, LOOKING_S) for name in AT_REST_TOO),

@@ -28,7 +28,8 @@ ENDS: dict[tuple[str, str], tuple[str, str]] = {
     **{("odometry", kind): NO_POSE for kind in ("frozen", "late")},
     **{("base", kind): BASE_LOST for kind in GONE},
     **{("base", kind): NO_POSE for kind in ("frozen", "late")},
-    **{("base", kind): STUCK for kind in ("blocked", "stuck", "slip")},
+    **{("base", kind): ("FAILURE", "odometry-frozen") for kind in ("blocked", "stuck")},
+    ("base", "slip"): STUCK,
     ("odometry", "slip"): STUCK,  # the laser sees that it comes no nearer
     ("module", "off"): ("FAILURE", "chain-stopped"),
     ("module", "raise"): ("STOPPED", "module-error"),

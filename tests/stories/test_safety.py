@@ -14,7 +14,7 @@ from pluto_bt.inputs.reading import Request, read_inputs
 from pluto_bt.runner import Runner, make_runner
 from tests.safety_cases import CAUSES, DRIVING, ROBOT, SPEED_MPS, T_S, Cause, braking_s, fault
 
-MAX_TIME_S = 12.0
+MAX_TIME_S = 14.0
 STILL_MPS = 0.01
 FIELD = """<world name="field" seed="1">
   <wall id="fence">-5,-10 60,-10 60,10 -5,10 -5,-10</wall>
