@@ -117,7 +117,7 @@ class CircleObject(MotionLeaf):
         turns = self._round.go(around.robot, seen.thing)
         if turns >= float(self.get_input("turns")):
             return self.succeed(f"{turns:.2f} turns")
-        if self._standstill.step(robot, now_s, is_held=bool(self._word)) > BLOCKED_S:
+        if self._standstill.step(robot, now_s, is_held=bool(self._waits.word)) > BLOCKED_S:
             if self._has_turned_back:
                 return self.fail("stuck", "the circle is blocked on both sides")
             self._side, self._has_turned_back, self._standstill = -self._side, True, Standstill(now_s)

@@ -14,16 +14,14 @@ from typing import ClassVar, Final
 from py_trees.common import Status
 
 from pluto_bt.behaviours.leaf import RobotLeaf
+from pluto_bt.behaviours.patience import Patience
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.reasons import BLIND, SENSORS, WAITING, sentence
+from pluto_bt.behaviours.reasons import BLIND, WAITING, sentence
 from pluto_bt.behaviours.robot import Robot, Ticket, why_no_pose
 from pluto_bt.blackboard.codes import Avoidance, LinkStatus, code_name
 from pluto_bt.blackboard.messages import BumperState, FVectorState, Pair
 
 AVOIDANCE: Final = {code_name(code): int(code) for code in Avoidance}  # A of cmdFlags = 10*A + T
-# a sensor on the brink is well for a moment now and then, and held wheels try again every second: these words must stay away for CLEAR_S
-FLICKERING: Final = (*SENSORS, "odometry-stale", "odometry-frozen", "no-pose")
-CLEAR_S: Final = 2.0
 ACCEPT_S: Final = 1.0  # motion takes a command within one of its steps, 0.1 s
 
 MOTION_INPUTS: Final = {
@@ -57,7 +55,7 @@ class MotionLeaf(RobotLeaf):
         self._was_accepted = False
         self._heard: FVectorState | None = None
         self._held = ""  # the word for which, by the last status of our command, the chain holds the robot back
-        self._word, self._word_since_s, self._word_seen_s = "", 0.0, -math.inf
+        self._waits = Patience()
         self._placeless_since_s = self._placeless_s = -math.inf
         self._start_s = self._last_s = self._posted_s = self.now_s()
         self._timeout_s = float(self.get_input("timeout_s"))
@@ -193,14 +191,9 @@ class MotionLeaf(RobotLeaf):
         return self.fail("cancelled", "another command took its place")
 
     def _patience(self, word: str, text: str) -> Status | None:
-        """Let the chain wait for a while with the same word. A moment without a word that flickers is no end of it."""
-        if word:
-            self._word_seen_s = self._last_s
-        elif self._word in FLICKERING and self._last_s - self._word_seen_s < CLEAR_S:
-            return None
-        if word != self._word:
-            self._word, self._word_since_s = word, self._last_s
-        if word and self._last_s - self._word_since_s >= self.PATIENCE_S.get(word, WAITING[word]):
+        """Let the chain wait for a while with the same word."""
+        waited_s = self._waits.waited_s(word, self._last_s)
+        if word and waited_s >= self.PATIENCE_S.get(word, WAITING[word]):
             return self.fail(word, text or sentence(word))
         return None
 

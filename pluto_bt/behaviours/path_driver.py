@@ -73,7 +73,7 @@ class PathDriver(MotionLeaf):
             return trouble
         if self._turning_since_s is not None:
             return self._turn(robot, here, self._turning_since_s)
-        if self._word or robot.surroundings.await_passers_by(self._last_s):
+        if self._waits.word or robot.surroundings.await_passers_by(self._last_s):
             self._following.wait(self._last_s)
         is_at_point = status is not None and status.element[1] == GotoStatus.REACHED
         if is_at_point and self._point == self._following.end:

@@ -165,7 +165,7 @@ class FollowRay(MotionLeaf):
         if self._goal is not None and is_near(around, self._goal):
             around.blocked = 0
             return self._decide("none", "the goal is near", near=True)
-        if status is not None and (self._word or around.await_passers_by(now_s)):  # he goes on: the place is not blocked
+        if status is not None and (self._waits.word or around.await_passers_by(now_s)):  # he goes on: the place is not blocked
             self._following.pause(now_s)
         speed_mps = status.data[0] if status is not None else 0.0
         advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)

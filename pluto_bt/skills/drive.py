@@ -186,5 +186,5 @@ class Drive:
         if share >= 1.0:
             return twist, False, ALL_WELL
         x_m, y_m = self._echoes[which, :2].tolist()
-        text = f"echo {self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
+        text = f"echo {max(0.0, self._outline.distance_m(x_m, y_m)):.2f} m from the outline, {where_word(x_m, y_m)}"
         return (twist[0] * share, twist[1] * share), share == 0.0, Verdict(sonar_code(x_m, y_m, self._outline), reasons.SONAR, text)

@@ -78,7 +78,7 @@ class Protection:
 
     def _seen(self, points: Array, which: int) -> Verdict:
         x_m, y_m = points[which, :2].tolist()
-        text = f"{self._outline.distance_m(x_m, y_m):.2f} m from the outline, {where_word(x_m, y_m)}"
+        text = f"{max(0.0, self._outline.distance_m(x_m, y_m)):.2f} m from the outline, {where_word(x_m, y_m)}"
         if self._sight.is_echo(which):
             return Verdict(sonar_code(x_m, y_m, self._outline), reasons.SONAR, f"echo {text}")
         return Verdict(LinkStatus.LASER_SLOW_STOP, reasons.LASER, f"obstacle {text}")

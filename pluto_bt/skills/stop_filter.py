@@ -213,5 +213,6 @@ class StopFilter:
         x_m, y_m, layer, _ = eyes.space.points[which].tolist()
         is_laser = layer == LEVEL and eyes.has_laser
         code = LinkStatus.LASER_SLOW_STOP if is_laser else sonar_code(x_m, y_m, self._outline)
-        what = f"{'the laser saw' if is_laser else 'the sonar heard'} something {self._outline.distance_m(x_m, y_m):.2f} m from the outline"
+        away_m = max(0.0, self._outline.distance_m(x_m, y_m))
+        what = f"{'the laser saw' if is_laser else 'the sonar heard'} something {away_m:.2f} m from the outline"
         return Verdict(code, reasons.LASER if is_laser else reasons.SONAR, f"{asked}: {what}, {where_word(x_m, y_m)}")

@@ -18,6 +18,7 @@ from pluto_bt.trees.contracts import CONTRACT
 from pluto_bt.trees.why_words import ODOMETRY, OF_CODE, OF_SENSOR, OF_THE_BASE, OF_WAITING, WRITERS, cure, meaning, rank
 
 LOCALISATION: Final = "localisation"
+MODULE_ERROR: Final = "module-error"
 ENDED_BY_ORDER: Final = ("aborted", reasons.STOPPED)  # of a mission
 CHAIN_MODULES: Final = ("world", "base", "local", "filter", "drive", "avoid", "motion", "executive")
 RECENT_S: Final = 6.0  # a complaint so lately still explains why a leaf has given up
@@ -113,7 +114,7 @@ def _person(view: View) -> Cause | None:
         return _cause("operator", word, text, _since(view, "hold"))
     if trail.situation.mission == ENDED_BY_ORDER:
         return _cause("operator", reasons.STOPPED, "an operator ended the mission", _since(view, "mission"), unblock="start the mission anew")
-    if not view.paused or trail.situation.moves:  # whom somebody drives by hand, no pause keeps standing
+    if view.paused in ("", MODULE_ERROR) or trail.situation.moves:  # that of a module is nobody's; whom somebody drives by hand, none keeps standing
         return None
     if view.paused == reasons.ESTOP:  # and is released: nothing holds the robot any more
         text = "an emergency stop, released since, paused the mission"
@@ -148,7 +149,7 @@ def _stopped(view: View, name: str) -> Cause | None:
     trouble = view.trail.situation.modules.get(name)
     if trouble is None:
         return None
-    code = "hung" if trouble.startswith("hung") else "module-stopped" if trouble == "stopped" else "module-error"
+    code = "hung" if trouble.startswith("hung") else "module-stopped" if trouble == "stopped" else MODULE_ERROR
     unblock = f"`pluto module start {name}`" if code == "module-stopped" else ""
     return _cause("module", code, f'module "{name}" is {trouble}', _since(view, f"module/{name}"), unblock=unblock)
 
@@ -191,7 +192,8 @@ def _complaints(view: View) -> Iterator[tuple[str, Trouble]]:
     may_be_past = is_over or not view.trail.situation.moves
     for name in (*reversed(LINKS), LOCALISATION):
         trouble = view.trail.troubles.get(name)
-        if trouble is None or (name == LOCALISATION and not may_be_past):  # what is found out there is corrected; the robot drives on
+        is_mended = name == LOCALISATION and trouble is not None and trouble.link.reason != reasons.LOST  # what is found out there is corrected
+        if trouble is None or (is_mended and not may_be_past):
             continue
         lately_ns = now_ns - (trouble.until_ns if trouble.until_ns is not None else now_ns)
         if trouble.until_ns is None or (lately_ns <= recent_s * 1e9 and may_be_past):

@@ -49,7 +49,7 @@ def rank(word: str) -> int:
     """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
     if word in BROKEN:
         return 0
-    if word in (reasons.NO_POSE, reasons.LOST, "tilted", "hindered", reasons.OUTSIDE_MAP):
+    if word in (reasons.NO_POSE, reasons.LOST, WHEEL_SLIP, "tilted", "hindered", reasons.OUTSIDE_MAP):
         return 1
     return 2 if word in OF_SENSOR else 3
 

@@ -10,7 +10,7 @@ import pytest
 
 import pluto_bt.behaviours
 import pluto_bt.skills
-from pluto_bt.behaviours.reasons import REASONS, WAITING, sentence
+from pluto_bt.behaviours.reasons import REASONS, SENSORS, WAITING, may_pass, sentence
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import FVectorState, Pose
 from pluto_bt.skills import reasons as chain
@@ -118,3 +118,25 @@ def test_a_word_without_a_sentence_of_its_own_is_given_the_documented_one(stage:
     result, mission = drive(stage, '<GoTo goal="3;4" reason="{why}"/>', silent, 4.0)
     assert result == "FAILURE"
     assert mission.deciding_text().endswith(sentence("no-pose"))
+
+
+TRIES = {
+    **dict.fromkeys(("bumper", "stuck", "no-path", "timeout", "walker", "", "a-word-of-my-own"), "SUCCESS"),
+    **dict.fromkeys(("laser-stale", "wrist-stale", "sonar-stale", "bumper-stale", "laser-fatal", "lost", "no-pose", "chain-stopped"), "FAILURE"),
+    **dict.fromkeys(("odometry-frozen", "outside-map", "outside-rectangle", "no-device", "bad-command", "estop", "stopped"), "FAILURE"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("word", "expected"), TRIES.items())
+def test_another_try_is_worth_it_only_after_what_may_pass(stage: Any, word: str, expected: str) -> None:
+    mission = stage.load(f'<WouldRetryHelp reason="{word}"/>')
+    assert stage.tick(mission) == expected
+    assert word in mission.node_states()[-1].feedback, "and it says of what it speaks"
+
+
+def test_where_no_leaf_has_given_a_reason_a_try_is_worth_it(stage: Any) -> None:
+    assert stage.tick(stage.load('<WouldRetryHelp reason="{nobody_wrote_it}"/>')) == "SUCCESS"
+
+
+def test_no_word_that_is_waited_for_as_a_sensor_is_worth_another_try() -> None:
+    assert [word for word in SENSORS if may_pass(word)] == []
