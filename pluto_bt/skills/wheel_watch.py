@@ -58,7 +58,7 @@ class WheelWatch:
         self._late: deque[tuple[float, Twist]] = deque([(0.0, STILL)])  # the model of the last moments: since when, and the twist
         self._last_s: float | None = None
         self._way, self._turn = Channel(LEAST_M), Channel(LEAST_RAD)
-        self._held_until_s = -1.0
+        self._held_until_s, self._raw_s = -1.0, -1.0
         self._text = ""
 
     def step(self, raw: ActuatorState, in_force: Twist, now_s: float) -> Verdict:
@@ -76,7 +76,8 @@ class WheelWatch:
             return Verdict(LinkStatus.NORMAL, reasons.ODOMETRY_FROZEN, self._text)
         way_s = self._way.stands_s(rate, in_force[0], dt_s, raw.position[0], now_s)
         turn_s = self._turn.stands_s(turn_rate, in_force[1], dt_s, raw.position[1], now_s)
-        if max(way_s, turn_s) < self._still_s:
+        is_news, self._raw_s = raw.stamp_s != self._raw_s, raw.stamp_s
+        if not is_news or max(way_s, turn_s) < self._still_s:  # who counts nothing says so in new readings; where none come, that is another fault
             return ALL_WELL
         self._held_until_s = now_s + self._retry_s
         self._text = (

@@ -112,6 +112,12 @@ def test_what_wheels_are_blamed_for(name: str, told: Callable[..., tuple[float, 
     assert ("odometry-frozen" in words(told, counted)) == is_noticed
 
 
+def test_wheels_are_not_blamed_for_readings_that_come_once_a_second() -> None:
+    watch, seldom = WheelWatch(LIMITS, 0.3, 1.0), [float(int(0.05 * k)) for k in range(100)]
+    said = [watch.step(ActuatorState(t, 0, (0.4 * t, 0.0)), (0.4, 0.0), 0.05 * k).reason for k, t in enumerate(seldom)]
+    assert "odometry-frozen" not in said
+
+
 def test_stuck_encoders_are_noticed_in_half_a_second_and_tried_again_after_a_second() -> None:
     said = words(lambda t: (0.4, 0.0), lambda t: (0.4 * min(t, 1.0), 0.0), 4.0)
     first = said.index("odometry-frozen") * 0.05

@@ -15,7 +15,7 @@ from pluto_bt.trees.why_box import why_at
 
 COURT = """<world name="court" seed="1"><wall id="fence">0,0 24,0 24,14 0,14 0,0</wall>
   <polygon id="shed">9,3.5 11.5,3.5 11.5,6 9,6</polygon> <circle id="drum" x="6.5" y="9.8" r="0.45"/> {more}
-  <robot name="pluto" platform="atrv2" x="3" y="{y}"/> <script><at t="{at_s}">{fault}</at></script></world>"""
+  <robot name="pluto" x="3" y="{y}"/> <script><at t="{at_s}">{fault}</at></script></world>"""
 PERSON = '<actor id="person" r="0.25" speed="0.4" loop="true">5,7 15,7 15,11 5,11</actor>'
 JOBS = {
     "moveto": '<MoveTo goal="20;3"/>', "explore": '<Explore rectangle="5;18"/>', "investigate": '<Investigate radius_m="2"/>',
