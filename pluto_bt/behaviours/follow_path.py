@@ -22,7 +22,8 @@ NAV2_CHOICES: Final = ("controller_id", "goal_checker_id", "progress_checker_id"
 class FollowPath(ActionLeaf, PathDriver):
     """Follows `path` to its end by avoidance's goto; a new path written while it drives is taken over. Fails with `stuck` where it is blocked."""
 
-    UNKNOWN, NUMBERS = 100, {"no-pose": 102, "no-path": 103, "stuck": 105, "bumper": 105, "laser-stale": 106, "sonar-stale": 106, "timeout": 107}
+    UNKNOWN, NUMBERS = 100, {"no-pose": 102, "no-path": 103, "stuck": 105, "bumper": 105, "laser-stale": 106, "wrist-stale": 106, "sonar-stale": 106,
+                        "timeout": 107}  # fmt: skip
     INPUT_PORTS = {
         "path": Port(MapPath, True, "the way, from PlanPath"),
         "tolerance_m": TOLERANCE,
