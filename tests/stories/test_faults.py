@@ -44,7 +44,7 @@ LIES = {
     ("base", "slow"), ("bumpers", "nan"), ("bumpers", "garbage"), ("bumpers", "slow"), ("wrist", "garbage"), ("wrist", "noise"),
     ("wrist", "wrong"), ("wrist", "bias"), ("wrist", "jump"),
 }  # fmt: skip
-ASTRAY = ("", "stuck", "timeout", "bumper", "sonar-stale", "bumper-stale", "laser-stale", "no-pose", "lost", "odometry-frozen")
+ASTRAY = ("", "stuck", "timeout", "bumper", "sonar-stale", "bumper-stale", "laser-stale", "odometry-stale", "no-pose", "lost", "odometry-frozen")
 EXITS = {"SUCCESS": 0, "FAILURE": 1, "STOPPED": 3}
 
 
