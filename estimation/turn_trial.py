@@ -46,6 +46,8 @@ class TurnTrial:
 
     def reckoned(self, dt_s: float, wheel_turn_rad: float, turn_rad: float, is_measured: bool) -> tuple[float, bool]:
         """(turn rad to reckon with, whether a sensor measured it)."""
+        if not is_measured:
+            self._put_right_s = -math.inf  # what has to be put right after this is not the gyro's fault
         if not self.trusts_gyro:
             return wheel_turn_rad, False
         return (turn_rad - self.drift_radps * dt_s if is_measured else turn_rad), is_measured

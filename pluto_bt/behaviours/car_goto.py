@@ -37,15 +37,14 @@ class CarGoTo(SteppedLeaf):
         self._skill = CarGoto(x, y, float(self.get_input("tolerance_m")), area.has_line)
         return None
 
-    def resume(self, robot: Robot) -> None:
-        """Its rounds begin anew: after a pause the wheels stand still, and nothing hinders them."""
-        super().resume(robot)
+    def restart(self) -> None:
+        """Its rounds begin anew: the wheels stand still, and nothing hinders them."""
         self._skill = CarGoto(self._skill.x_m, self._skill.y_m, self._skill.tolerance_m, self._skill.line_is_inside)
 
     def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
         """One step of the skill."""
         x, y, theta = pose
-        order = self._skill.step(CarState(x, y, heading_deg(theta), speed_of(robot)))
+        order = self._skill.step(CarState(x, y, heading_deg(theta), speed_of(robot), self.is_driven))
         if order.ended == REACHED:
             return self.succeed(order.text)
         if order.ended:

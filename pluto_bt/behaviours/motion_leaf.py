@@ -68,7 +68,7 @@ class MotionLeaf(RobotLeaf):
         if not self._began:
             self._began = True
             ended = self.begin(robot)
-            return self.wait("starting") if ended is None else ended
+            return self.wait("starting") if ended is None else self._told(ended)
         if was_paused:  # that time does not count
             self._start_s += self._gap_s
             self.resume(robot)

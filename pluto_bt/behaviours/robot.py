@@ -112,9 +112,9 @@ class Robot(Protocol):
 
 
 def pose_doubt(robot: Robot) -> FVectorState:
-    """Why the pose must not be believed: `reason` is `lost` or `no-pose`, or "" if nothing speaks against it."""
+    """Why the pose must not be believed: `reason` is one of `PLACELESS`, or "" if nothing speaks against it."""
     check = robot.newest("Localization/Check")
-    return check if isinstance(check, FVectorState) and check.reason in (reasons.LOST, reasons.NO_POSE) else NO_DOUBT
+    return check if isinstance(check, FVectorState) and check.reason in reasons.PLACELESS else NO_DOUBT
 
 
 def why_no_pose(robot: Robot) -> tuple[str, str]:

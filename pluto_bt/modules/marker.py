@@ -32,6 +32,7 @@ class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     heading_noise_deg: Annotated[float, Meta(gt=0, description="standard deviation of a marker's heading")] = 2.0
     most_heading_bias_deg: Annotated[float, Meta(gt=0, description="median of the last three; more: the gyro is wrong")] = 8.0
     far_m: Annotated[float, Meta(gt=0, description="from the estimate; an accepted marker farther off must be confirmed by the next")] = 0.5
+    silent_after_s: Annotated[float, Meta(gt=0, description="when none has passed for so long it is told: marker-stale")] = 10.0
 
 
 class Marker:

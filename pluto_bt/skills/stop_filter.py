@@ -16,6 +16,7 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons, stop_path
 from pluto_bt.skills.filter_eyes import FilterEyes, FilterSenses
 from pluto_bt.skills.filter_parameters import FilterParameters
+from pluto_bt.skills.hindrance import Hindrance
 from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
 from pluto_bt.skills.map_hold import held_by_area
@@ -52,6 +53,7 @@ class StopFilter:
         self.eyes = FilterEyes(platform, p, self._outline, self._window_m(self.limits.speed_mps)) if has_eyes else None
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self._first_trouble = first_trouble.compiled()
+        self._hindrance = Hindrance() if self._wheels is None else None
         limits = self.limits
         self._robot: Array = np.array([
             0.0, 0.0, limits.acceleration_mps2, BRAKING_SHARE * limits.deceleration_mps2, BRAKING_SHARE * limits.turn_acceleration_radps2,
@@ -63,6 +65,9 @@ class StopFilter:
     def step(self, wanted: Twist, now_s: float, senses: FilterSenses) -> Twist:
         """The twist that may go to the base now."""
         out, verdict = self._passed(wanted, now_s, senses)
+        if self._hindrance is not None and senses.raw is not None:
+            hindered = self._hindrance.step(self.out[0], senses.raw.position[0], now_s)
+            verdict = hindered if verdict == ALL_WELL else verdict
         is_same = verdict[:2] == self.verdict[:2] and (out == STILL) == (self.out == STILL)
         self.verdict = self.verdict if is_same else verdict  # a text is written once when a state begins, not anew with each figure
         self.out = out
@@ -145,6 +150,8 @@ class StopFilter:
             pose, whose = senses.pose, "dead reckoning"
         elif self._area.is_everything:
             return None
+        elif senses.doubt != ALL_WELL:
+            return senses.doubt
         else:
             pose, whose = senses.pose_map, "localisation"
         is_known = pose is not None and now_s - pose[0] <= stale_s
