@@ -19,7 +19,7 @@ IN_PLACE_RADPS: Final = math.radians(30.0)
 
 
 class MakeTurn(SteppedLeaf):
-    """Turns by `angle_deg` relative to the present heading, clockwise positive (the only clockwise angle in missions), until within 10°. Gives up after 30 s: `timeout`."""
+    """Turns by `angle_deg` relative to the present heading, clockwise positive (the only such angle in missions), to within 10°; 30 s: `timeout`."""
 
     WAY: ClassVar = "stays"
     INPUT_PORTS = {

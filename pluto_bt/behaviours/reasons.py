@@ -43,7 +43,9 @@ REASONS: Final[dict[str, Reason]] = {
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
     "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose, then go on"),
-    "marker-stale": Reason("no marker has passed for long, and the car reckons with wheels and gyro alone", "bring it under a marker, or look at camera and server"),
+    "marker-stale": Reason(
+        "no marker has passed for long, and the car reckons with wheels and gyro alone", "bring it under a marker, or look at camera and server"
+    ),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
     "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
     "no-input": Reason("a port that the leaf needs has no value on this way", "write its entry on every way that leads there, see the message"),

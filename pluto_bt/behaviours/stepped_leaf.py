@@ -37,7 +37,7 @@ class SteppedLeaf(MotionLeaf):
         """Look at the ports. A status ends the leaf before anything moves."""
         return None
 
-    def restart(self) -> None:  # noqa: B027 - a leaf without a past has nothing to forget
+    def restart(self) -> None:
         """The robot stood by order or for want of a sensor, and goes on."""
 
     @abstractmethod

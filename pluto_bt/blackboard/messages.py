@@ -207,7 +207,7 @@ class JobState(Message, frozen=True, gc=False):
 
 
 class PathState(Message, frozen=True, gc=False):
-    """A path that is followed, in the map frame: x y x y …; empty = none."""
+    """A path that is followed, in the map frame: x y x y …; one point = a goal without a planned way; empty = none."""
 
     points_m: tuple[float, ...] = ()
 

@@ -21,7 +21,10 @@ MOST_PAN_RAD = 0.15  # from scan to scan: while the wrist moves faster its angle
 
 
 class MotionCheckShown:
-    """`Localization/Check` on each change: element[0] 0 the witnesses agree, 1 one is corrected, 2 lost, 3 one is silent; data = grip, drift rad/s, fit."""
+    """`Localization/Check` on each change: element[0] 0 the witnesses agree, 1 one is corrected, 2 lost, 3 one is silent.
+
+    Its data are grip, drift in rad/s, fit.
+    """
 
     def __init__(self, context: Context, check: MotionCheck) -> None:
         self._check, self._say = check, context.say

@@ -13,7 +13,6 @@ from estimation.se2 import Pose2, arc
 from estimation.track import LEVEL, Tilt
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
 from pluto_bt.blackboard.topics import TOPICS
-from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 from pluto_bt.skills import reasons
 
@@ -54,35 +53,30 @@ class WheelWay:
 
 
 class SpeedWay:
-    """Way from the car's unsigned wheel speed with the sign of the last command; turn as the base makes it out of the steering it was told."""
+    """Way from the car's unsigned wheel speed, with the sign of the last command; turn as the base makes it out of the steering it was told.
+
+    While the wheel speed is silent, the base's own count stands in: the car stands then, but it rolls on to where it stands.
+    """
 
     def __init__(self, context: Context) -> None:
         self._speed = context.board.reader("car/speed")
         self._command = context.board.reader("ATRV2/Drive/Command")
-        self._raw = context.board.reader("ATRV2/Drive/Raw")
+        self._base = WheelWay(context)
         self._signed = SignedSpeed()
-        self._steered_rad: float | None = None  # the base's heading when it was looked at last
         self.age_s = 0.0  # of the wheel speed
 
     def step(self, now_s: float) -> tuple[float, float, float, float] | None:
-        """(stamp s, dt s, distance m, turn rad) each time it is called, None while the speed is missing or stale."""
-        sample, command = self._speed(), self._command()
+        """(stamp s, dt s, distance m, turn rad) each time it is called; None while both are silent."""
+        sample, command, base = self._speed(), self._command(), self._base.step(now_s)
         speed = sample.value if sample is not None and isinstance(sample.value, SpeedState) else None
         self.age_s = now_s if speed is None else now_s - speed.stamp_s
-        if speed is None:
-            return None
-        is_stale = self.age_s > STALE_AFTER_S["car/speed"]
+        is_silent = speed is None or self.age_s > STALE_AFTER_S["car/speed"]
         commanded = command.value.velocity[0] if command is not None and isinstance(command.value, ActuatorState) else 0.0
-        dt_s, way_m = self._signed.step(now_s, 0.0 if is_stale else speed.speed_mps, commanded)
-        return None if is_stale or dt_s <= 0.0 else (now_s, dt_s, way_m, self._steered())
-
-    def _steered(self) -> float:
-        """By how much the steering has turned the car since the last look, if the wheels grip and the base is well."""
-        sample, last_rad = self._raw(), self._steered_rad
-        if sample is None or not isinstance(sample.value, ActuatorState):
-            return 0.0
-        self._steered_rad = sample.value.position[1]
-        return 0.0 if last_rad is None else wrap_angle(self._steered_rad - last_rad)
+        dt_s, way_m = self._signed.step(now_s, 0.0 if speed is None else speed.speed_mps, commanded)
+        if dt_s <= 0.0 or (is_silent and base is None):
+            return None
+        counted_m, steered_rad = (0.0, 0.0) if base is None else base[2:]
+        return now_s, dt_s, counted_m if is_silent else way_m, steered_rad
 
 
 class MotionSources:

@@ -11,7 +11,7 @@ from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.skills import reasons
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
-LOOK_S: Final = 1.0  # judged so often
+AFTER_S: Final = 1.0  # of standing it is told; as the alarm of stuck wheels
 LEAST_M: Final = 0.15  # of commanded way, more than two pulses of 6.41 cm; less says nothing
 LEAST_SHARE: Final = 0.1  # of the commanded way; who counts less stands
 
@@ -33,10 +33,14 @@ class Hindrance:
             return ALL_WELL
         self._expected_m += abs(told_mps) * dt_s
         driven_m, time_s = abs(counted_m - self._counted_m), now_s - self._since_s
-        if time_s >= LOOK_S and self._expected_m >= LEAST_M:
+        if self._expected_m < LEAST_M:
+            return self._verdict
+        if driven_m >= LEAST_SHARE * self._expected_m:
+            self._verdict = ALL_WELL
+            self._begin(counted_m, now_s)
+        elif time_s >= AFTER_S:
             text = f"told to drive {self._expected_m:.2f} m within {time_s:.1f} s, and the wheels have counted {driven_m:.2f} m"
-            stands = driven_m < LEAST_SHARE * self._expected_m
-            self._verdict = Verdict(LinkStatus.NORMAL, reasons.HINDERED, text) if stands else ALL_WELL
+            self._verdict = Verdict(LinkStatus.NORMAL, reasons.HINDERED, text)
             self._begin(counted_m, now_s)
         return self._verdict
 

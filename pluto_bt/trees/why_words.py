@@ -19,7 +19,6 @@ OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
     reasons.WALKER: ("people", ""), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
     WHEEL_SLIP: ("wheels", ""), reasons.GYRO_STALE: ("gyro", "dmu/state"), reasons.SPEED_STALE: ("wheel speed", "car/speed"),
-    reasons.MARKER_STALE: ("markers", "car/marker"),
     "tilted": ("orientation", "imu/alarms"), reasons.HINDERED: ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
 }  # fmt: skip

@@ -10,7 +10,11 @@ import pytest
 
 import sim.worlds
 from pluto_bt.bench import trips
+from pluto_bt.record.box import open_box
+from pluto_bt.record.curves import goals_of
 from pluto_bt.scenario import Play, Run
+from pluto_bt.source import Faults
+from pluto_bt.trees.why_box import why_at
 
 CORRIDOR = (Path(sim.worlds.__file__).parent / "corridor.xml").read_text(encoding="utf-8")
 ROBOT = '<robot name="car"'
@@ -120,8 +124,8 @@ def test_maketurn_is_relative_and_clockwise_on_every_robot(scenario: Play, corri
 # for twenty seconds of the second step: device, kind, and the word with which the trip ends ("" = it goes on)
 FAULTS = [
     ("marker", "off", ""), ("marker", "frozen", ""), ("marker", "nan", ""), ("marker", "garbage", ""), ("marker", "late", ""),
-    ("speed", "off", "no-pose"), ("speed", "nan", "no-pose"), ("speed", "stuck", ""),
-    ("imu", "off", "no-pose"), ("imu", "nan", "no-pose"), ("base", "blocked", "hindered"), ("base", "off", "base-lost"),
+    ("speed", "off", "speed-stale"), ("speed", "nan", "speed-stale"), ("speed", "stuck", ""),
+    ("imu", "off", "gyro-stale"), ("imu", "nan", "gyro-stale"), ("base", "blocked", "hindered"), ("base", "off", "base-lost"),
 ]  # fmt: skip
 
 
@@ -134,6 +138,58 @@ def test_a_fault_of_its_own_sensors_never_drives_it_into_a_wall(scenario: Play, 
     assert run.collisions == 0
     assert run.reason == ends, run.text
     assert run.exit_code == {"": 0, "base-lost": 3}.get(ends, 1)
+
+
+@pytest.mark.parametrize("at_s", [5.0, 13.0, 20.0, 38.0])  # the first leg, on the bend at the top, down the corridor, on the bend below
+@pytest.mark.parametrize(("device", "for_s", "word"), [("imu", 2.8, "gyro-stale"), ("speed", 3.5, "speed-stale")])
+def test_it_stands_while_a_sensor_is_silent_and_goes_on_when_it_speaks_again(
+    scenario: Play, corridor: Path, device: str, for_s: float, word: str, at_s: float
+) -> None:
+    script = f'<script><at t="{at_s}"><fault device="{device}" kind="off" for="{for_s}"/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 1, 2)
+    assert (run.result, run.reason, run.collisions) == ("SUCCESS", "", 0), run.text
+    stood = [point for point in run.track if at_s + for_s - 0.3 < point.t_s < at_s + for_s]
+    assert math.dist(stood[0].pose[:2], stood[-1].pose[:2]) < 0.01, word
+    assert math.dist(run.final_pose[:2], run.estimated_pose[:2]) < 0.15
+    assert not run.said("gyro-drift"), "a turn that the gyro missed is none of its drift"
+
+
+def test_wheels_that_stand_against_a_wall_are_told_at_once_and_a_turn_ends_with_that_cause(scenario: Play, corridor: Path) -> None:
+    mission = corridor.with_name("m.xml")
+    mission.write_text('<root BTCPP_format="4"><BehaviorTree ID="m"><MakeTurn angle_deg="-170"/></BehaviorTree></root>', encoding="utf-8")
+    run = scenario(str(corridor), mission=str(mission), start="0.5,12,90", record=corridor.with_name("a.mcap"))
+    assert (run.result, run.reason, run.collisions) == ("FAILURE", "timeout", 1)
+    assert run.sim_time_s < 30.2
+    assert "hindered: told to drive" in run.text
+    met_s = run.contacts[0]["t_s"]
+    box = open_box(corridor.with_name("a.mcap"), "a.mcap", Faults())
+    assert box is not None
+    answer = why_at(box, met_s + 1.7)
+    assert (answer.is_moving, answer.first.code) == (False, "hindered")
+
+
+def test_the_goals_of_a_trip_are_drawn(scenario: Play, corridor: Path) -> None:
+    run = scenario(str(corridor), mission="trip2.xml", start="0.5,12,90", ports={"max_loops": 1}, record=corridor.with_name("a.mcap"))
+    goals = [(0.5, 18.5), (0.7, 17.0), (0.6, 11.0), (0.5, 6.0), (0.5, 9.0)]
+    assert list(run.runner.goals()) == goals
+    box = open_box(corridor.with_name("a.mcap"), "a.mcap", Faults())
+    assert box is not None and goals_of(box) == goals
+    assert run.runner.system.board.newest("map/path").value.points_m == (), "at the end it drives to none"
+
+
+def test_a_car_that_sees_no_marker_for_long_says_so_and_how_sure_it_is(scenario: Play, corridor: Path) -> None:
+    script = '<script><at t="3"><fault device="marker" kind="off"/></at></script>'
+    corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
+    run = trip(scenario, corridor, 1, 2)
+    assert (run.result, run.collisions) == ("SUCCESS", 0), run.text
+    assert len(run.said("marker-stale")) == 1
+    board = run.runner.system.board
+    assert board.newest("Localization/Check").value.reason == "marker-stale"
+    pose = board.newest("Localization/Pose").value
+    sigma_m = math.sqrt(pose.covariance[0] + pose.covariance[4])
+    off_m = math.dist(run.final_pose[:2], run.estimated_pose[:2])
+    assert 0.1 < sigma_m < 0.5 and off_m < 3.0 * sigma_m
 
 
 @pytest.mark.parametrize(
