@@ -203,4 +203,6 @@ def _waiting_word(status: FVectorState) -> str:
         return "bumper"
     if code == LinkStatus.LASER_FATAL:
         return "laser-fatal"
+    if status.reason == "outside-map" and status.data != (0.0, 0.0):
+        return ""  # it slows before the edge of its area
     return status.reason if status.reason in WAITING else ""

@@ -19,7 +19,7 @@ from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.hindrance import Hindrance
 from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
-from pluto_bt.skills.map_hold import held_by_area
+from pluto_bt.skills.map_hold import Braking, held_at_edge, held_by_area
 from pluto_bt.skills.outline import Array, Planar, outline_of
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
 from pluto_bt.skills.sonar import sonar_code, where_word
@@ -41,12 +41,13 @@ class StopFilter:
     def __init__(self, platform: Platform, parameters: FilterParameters, area: MapArea) -> None:
         self.parameters = p = parameters
         self.limits = limits_of(platform)
-        self._platform, self._area = platform, area
+        self._platform, self._area = platform, area.shrunk(p.area_margin_m)
         self._outline = outline_of(platform.body.outline_m)
         self._rim = rim_of(self._outline, platform.body.outline_m)
         devices, motors = platform.devices, platform.limits
         self._lag_s = motors.motor_latency_s + motors.motor_time_constant_s
         self._hold_s = p.period_s + self._lag_s + 0.05  # odometry and scheduling take their time too
+        self._braking = Braking(self._hold_s, BRAKING_SHARE * self.limits.deceleration_mps2)
         self._has_bumpers = devices.bumpers is not None
         self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
         has_eyes = devices.laser is not None or devices.sonar is not None
@@ -96,13 +97,9 @@ class StopFilter:
         if self.eyes is not None:
             self.eyes.forget()
 
-    def _stop_m(self, speed_mps: float) -> float:
-        """The way from a decision to standstill."""
-        return abs(speed_mps) * self._hold_s + speed_mps * speed_mps / (2.0 * BRAKING_SHARE * self.limits.deceleration_mps2)
-
     def _window_m(self, speed_mps: float) -> float:
         """How far from the robot's centre things matter at a speed."""
-        return self._outline.reach_m + self._stop_m(speed_mps) + stop_path.MOST_MARGIN_M + 2 * CELL_M
+        return self._outline.reach_m + self._braking.way_m(speed_mps) + stop_path.MOST_MARGIN_M + 2 * CELL_M
 
     # ---------------------------------------------------------------- deciding
 
@@ -119,7 +116,7 @@ class StopFilter:
         held, verdict = self._bumped(wanted, senses.bumper)
         if self.eyes is None:
             place = senses.pose_map  # fresh, or `_trouble` had spoken, where there is an area to leave
-            return (held, verdict) if place is None else held_by_area(self._area, held, place[1], self._stop_m(held[0]), verdict)
+            return (held, verdict) if place is None else self._in_area(held, place[1], verdict)
         if not self.eyes.hears(now_s):
             deaf = Verdict(LinkStatus.SONAR_FRONT, reasons.SONAR_STALE, f"no usable echoes younger than {p.sonar_stale_s:g} s")
             held, verdict = self._slowed(held, p.without_sonar_mps, deaf, verdict)
@@ -156,6 +153,12 @@ class StopFilter:
             pose, whose = senses.pose_map, "localisation"
         is_known = pose is not None and now_s - pose[0] <= stale_s
         return None if is_known else Verdict(LinkStatus.NORMAL, reasons.NO_POSE, f"{whose} has given no pose for {stale_s:g} s")
+
+    def _in_area(self, twist: Twist, robot: Planar, verdict: Verdict) -> tuple[Twist, Verdict]:
+        """What the mapped area lets through: as for a point, or so that the robot keeps from its edge."""
+        if self.parameters.area_margin_m == 0.0:
+            return held_by_area(self._area, twist, robot, self._braking.way_m(twist[0]), verdict)
+        return held_at_edge(self._area, twist, robot, self._braking, verdict)
 
     def _bumped(self, twist: Twist, bumper: BumperState | None) -> tuple[Twist, Verdict]:
         """A pressed panel: no motion towards it, and no rotation."""
