@@ -18,6 +18,7 @@ from pluto_bt.skills.limits import STILL, clamp
 
 GYRO_WAIT_S: Final = 90.0  # the bias takes 1000 samples, 20 s at 50 Hz, and starts again when the car is moved
 MARKER_WAIT_S: Final = 5.0
+ELSEWHERE_WAIT_S: Final = 10.0  # so far (m) the gate lets a car have been carried in that time, and it believes then
 POSE_WAIT_S: Final = 3.0
 
 
@@ -76,10 +77,12 @@ class SteppedLeaf(MotionLeaf):
             gyro = robot.newest("dmu/state")
             if not isinstance(gyro, ImuState) or not gyro.bias_known:
                 return "waiting for the gyro's bias", GYRO_WAIT_S
-        if self.NEEDS_MARKER and devices.marker is not None:
-            marker = robot.newest("car/marker")
-            if not isinstance(marker, MarkerState) or marker.accepted_count == 0:
-                return "waiting for an accepted marker", MARKER_WAIT_S
+        marker = robot.newest("car/marker") if devices.marker is not None else None
+        is_seen = isinstance(marker, MarkerState) and marker.accepted_count > 0
+        if self.NEEDS_MARKER and devices.marker is not None and not is_seen:
+            return "waiting for an accepted marker", MARKER_WAIT_S
+        if isinstance(marker, MarkerState) and marker.is_elsewhere:
+            return pose_doubt(robot).text or "the markers see it elsewhere", ELSEWHERE_WAIT_S
         return (pose_doubt(robot).text or "waiting for a pose", POSE_WAIT_S) if pose is None else ("", 0.0)
 
     def _stand(self, robot: Robot, missing: str, patience_s: float) -> Status:

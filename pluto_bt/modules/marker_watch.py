@@ -5,11 +5,11 @@ from __future__ import annotations
 from pluto_bt.blackboard.messages import MarkerState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.marker import MarkerParameters
-from pluto_bt.skills.reasons import MARKER_STALE
+from pluto_bt.skills.reasons import LOST, MARKER_STALE
 
 
 class MarkerWatch:
-    """Tells when none has passed for `marker.silent_after_s`, and when one does again."""
+    """Tells when none has passed for `marker.silent_after_s`, when one does again, and when they see the car elsewhere than it was reckoned."""
 
     def __init__(self, context: Context) -> None:
         self._say = context.say
@@ -20,13 +20,15 @@ class MarkerWatch:
         self._told = ("", "")
 
     def silence(self, now_s: float) -> tuple[str, str]:
-        """Word and sentence while none has passed for long; "" else."""
+        """Word and sentence while none has passed for long, or they tell of another place; "" else."""
         if not self._has_camera:
             return "", ""
         sample = self._state()
         seen = sample.value if sample is not None and isinstance(sample.value, MarkerState) else None
         if sample is not None and seen is not None and seen.accepted_count != self._passed:
             self._passed, self._passed_s = seen.accepted_count, sample.written_s
+        if seen is not None and seen.is_elsewhere:
+            return LOST, "the markers see the car elsewhere than wheels and gyro have brought it"
         if now_s - self._passed_s <= self._most_s:
             if self._told[0]:
                 self._say("info", "marker-again", "local", "a marker has passed again")

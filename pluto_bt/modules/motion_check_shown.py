@@ -82,7 +82,7 @@ class MotionCheckShown:
         if check.lost:
             return IS_LOST, LOST, self._lost_text or self._text
         if silence[0] and silence[0] != MARKER_STALE:
-            return SILENT, *silence
+            return (IS_LOST if silence[0] == LOST else SILENT), *silence
         if check.turn.is_settling:
             return CORRECTED, NO_POSE, SETTLING
         if silence[0]:
