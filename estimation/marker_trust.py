@@ -56,10 +56,9 @@ class MarkerTrust:
 
     def contradict(self, seen: Contradiction) -> None:
         """This one does not."""
-        same = [one for one in self._run if self._tells_same(one, seen)]
         self._run.append(seen)
         self._accusers.add(seen.marker)
-        self.alike = 1 + len(same[-(MOST - 1) :])
+        self.alike = sum(self._tells_same(one, seen) for one in self._run)
 
     @property
     def is_confirmed(self) -> bool:

@@ -56,7 +56,7 @@ class Marker:
         self._start_rad = context.start_pose[2]
         p = context.parameters(MarkerParameters)
         self._parameters = p
-        self._last: tuple[tuple[float, ...], tuple[float, ...]] | None = None  # numbers of the last new reading, and where it was thought to be
+        self._last: tuple[tuple[float, ...], tuple[float, ...]] | None = None  # numbers of the last new reading, and dead reckoning then
         self._say = context.say
         self._off_rad: deque[float] = deque(maxlen=JUDGED)  # heading of the last accepted markers less the estimate's
         self._trust = MarkerTrust(math.radians(p.most_heading_bias_deg))
@@ -81,7 +81,7 @@ class Marker:
         pose = pose or newest
         heading_rad = self._start_rad if pose is None else pose.pose[3]
         seen = (r.x_m, r.y_m, r.theta_rad)
-        refused = TOO_OLD if is_past else self._repeated(r, pose) or self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
+        refused = TOO_OLD if is_past else self._repeated(r) or self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
         if self._trusts(r, refused, pose, heading_rad):
             if refused == BAD_HEADING:
                 heading_rad = r.theta_rad
@@ -92,10 +92,11 @@ class Marker:
         passed = self.gate.accepted_count
         self._state.put(MarkerState(r.stamp_s, r.marker, *seen, r.quality, refused, passed, self._trust.is_elsewhere), now_s)
 
-    def _repeated(self, r: MarkerRecord, pose: Pose | None) -> str:
+    def _repeated(self, r: MarkerRecord) -> str:
         """A camera that sees the same to the last digit though the car has moved on looks at nothing."""
-        numbers = (r.x_m, r.y_m, r.theta_rad, r.quality)
-        last, here = self._last, (0.0, 0.0) if pose is None else pose.pose[:2]
+        sample = self._board.newest("Localization/Dead-Reckoning")
+        here = sample.value.pose[:2] if sample is not None and isinstance(sample.value, Pose) else (0.0, 0.0)
+        numbers, last = (r.x_m, r.y_m, r.theta_rad, r.quality), self._last
         if last is not None and last[0] == numbers:
             return REPEATED if math.dist(last[1], here) > MOVED_M else ""
         self._last = (numbers, here)
