@@ -15,11 +15,13 @@ from pluto_bt.blackboard.messages import ActuatorState, FVectorState, ImuState, 
 from pluto_bt.skills.car_goto import STEP_S
 from pluto_bt.skills.car_steering import turn_rate
 from pluto_bt.skills.limits import STILL, clamp
+from pluto_bt.skills.reasons import NO_POSE
 
 GYRO_WAIT_S: Final = 90.0  # the bias takes 1000 samples, 20 s at 50 Hz, and starts again when the car is moved
 MARKER_WAIT_S: Final = 5.0
 ELSEWHERE_WAIT_S: Final = 10.0  # so far (m) the gate lets a car have been carried in that time, and it believes then
 POSE_WAIT_S: Final = 3.0
+REST_WAIT_S: Final = 6.0  # the heading was wrong: it rolls to a stop, and finds its gyro's bias at rest
 
 
 class SteppedLeaf(MotionLeaf):
@@ -83,7 +85,10 @@ class SteppedLeaf(MotionLeaf):
             return "waiting for an accepted marker", MARKER_WAIT_S
         if isinstance(marker, MarkerState) and marker.is_elsewhere:
             return pose_doubt(robot).text or "the markers see it elsewhere", ELSEWHERE_WAIT_S
-        return (pose_doubt(robot).text or "waiting for a pose", POSE_WAIT_S) if pose is None else ("", 0.0)
+        if pose is not None:
+            return "", 0.0
+        doubt = pose_doubt(robot)
+        return doubt.text or "waiting for a pose", REST_WAIT_S if doubt.reason == NO_POSE else POSE_WAIT_S
 
     def _stand(self, robot: Robot, missing: str, patience_s: float) -> Status:
         if missing != self._waits_for:

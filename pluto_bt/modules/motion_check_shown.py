@@ -69,7 +69,8 @@ class MotionCheckShown:
             self._word, self._text = word, text
             self._lost_text = text if word == LOST else self._lost_text
         check.news.clear()
-        state = (check.way.grip, check.turn.drift_radps, check.turn.trusts_gyro, check.lost, check.turn.is_settling)
+        settles = check.turn.is_settling or now_s < check.turn.rests_until_s
+        state = (check.way.grip, check.turn.drift_radps, check.turn.trusts_gyro, check.lost, settles)
         if (state, silence[0]) == self._shown:
             return
         self._shown = (state, silence[0])
@@ -83,7 +84,7 @@ class MotionCheckShown:
             return IS_LOST, LOST, self._lost_text or self._text
         if silence[0] and silence[0] != MARKER_STALE:
             return (IS_LOST if silence[0] == LOST else SILENT), *silence
-        if check.turn.is_settling:
+        if state[4]:
             return CORRECTED, NO_POSE, SETTLING
         if silence[0]:
             return SILENT, *silence
