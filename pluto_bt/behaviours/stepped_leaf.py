@@ -88,7 +88,7 @@ class SteppedLeaf(MotionLeaf):
         if pose is not None:
             return "", 0.0
         doubt = pose_doubt(robot)
-        return doubt.text or "waiting for a pose", REST_WAIT_S if doubt.reason == NO_POSE else POSE_WAIT_S
+        return doubt.text or "waiting for a pose", REST_WAIT_S if doubt.reason == NO_POSE and devices.marker is not None else POSE_WAIT_S
 
     def _stand(self, robot: Robot, missing: str, patience_s: float) -> Status:
         if missing != self._waits_for:
