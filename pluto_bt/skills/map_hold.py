@@ -19,7 +19,7 @@ from pluto_bt.skills.verdict import Verdict
 
 OUTSIDE_M = 0.05  # a position may be wrong by so much before it counts as outside
 SLOWEST_MPS = 0.01  # less is not worth the motors' while
-EDGE_STEP_M = 0.02  # so finely the way to the edge is looked at
+FINE_M = 0.01  # so finely the edge is found
 BACK_M, STEP_M = 3.0, 0.1  # an arc that does not meet the area within this way, looked at in such steps, does not lead back
 
 
@@ -43,15 +43,22 @@ def held_at_edge(area: MapArea, twist: Twist, pose: Planar, braking: Braking, ve
     stop_m = braking.way_m(twist[0])
     if twist[0] == 0.0 or not area.has_point(pose[0], pose[1]):
         return held_by_area(area, twist, pose, stop_m, verdict)
-    ways_m = np.append(np.arange(EDGE_STEP_M, stop_m, EDGE_STEP_M), stop_m) * math.copysign(1.0, twist[0])
-    beyond = next((i for i, way_m in enumerate(ways_m.tolist()) if not area.has_point(*on_arc(pose, twist, way_m))), None)
-    if beyond is None:
+    free_m = _free_m(area, twist, pose, stop_m)
+    if free_m >= stop_m:
         return twist, verdict
-    free_m = EDGE_STEP_M * beyond
     share = braking.speed_mps(free_m) / abs(twist[0])
     out = STILL if abs(twist[0]) * share < SLOWEST_MPS else (twist[0] * share, twist[1] * share)
     text = f"{twist[0]:.2f} m/s were asked for, {out[0]:.2f} pass: the edge of the mapped area is {free_m:.2f} m ahead"
     return out, Verdict(LinkStatus.NORMAL, reasons.OUTSIDE_MAP, text)
+
+
+def _free_m(area: MapArea, twist: Twist, pose: Planar, most_m: float) -> float:
+    """How far the arc of a twist leads inside the area, up to `most_m`; the edge is found to FINE_M."""
+    ahead, free_m = math.copysign(1.0, twist[0]), 0.0
+    for step_m in (STEP_M, FINE_M):
+        while free_m < most_m and area.has_point(*on_arc(pose, twist, min(free_m + step_m, most_m) * ahead)):
+            free_m += step_m
+    return min(free_m, most_m)
 
 
 class Braking(NamedTuple):
