@@ -20,21 +20,21 @@ LEAST_OF_LIAR_RAD = 0.025  # the same for a gyro that is known to drift
 WHEELS_SHARE, WHEELS_RAD = 0.2, 0.02  # wheels and gyro agree about a turn: skidding, and counts
 ALONE_RADPS, STRAIGHT_RADPS = 0.15, 0.03  # without laser: a turn of the gyro, and of wheels that run straight
 STRIKES, STRIKES_S, JUMP_RADPS = 3, 15.0, math.radians(2.5)  # so many jumps of so much within such a time: this is no bias
-AGAIN_S, MUCH_RADPS = 6.0, math.radians(10.0)  # put right from outside: so soon again it is a drift; so much is a strike
+REST_S = 4.5  # put right from outside, a car should stand so long: it rolls to a stop, and at rest the gyro's bias is found anew
 SMALL_RADPS = 0.005  # what is left of a drift after the bias was measured anew
 MAKE_UP_RADPS, SETTLING_RAD = 1.0, 0.3
 
 
 class TurnTrial:
     """Attributes: `drift_radps` is taken off the sensor's turn; `trusts_gyro`: False = the wheels stand in; `debt`: turn still owed, rad;
-    `lag_rad`: the part of the last finding that is for the time since its scan.
+    `lag_rad`: the part of the last finding that is for the time since its scan; `rests_until_s`: till then a car should stand.
     """
 
     def __init__(self, news: list[News], asks_wheels: bool) -> None:
         self.drift_radps, self.trusts_gyro = 0.0, True
         self.debt = Debt(MAKE_UP_RADPS)
         self.lag_rad = 0.0
-        self._put_right_s = -math.inf
+        self.rests_until_s = -math.inf
         self._news, self._asks_wheels = news, asks_wheels
         self._pieces: deque[tuple[float, float, Motion]] = deque()  # stamp s, laser's turn − reckoned turn, motion: the last comparisons
         self._strikes: deque[float] = deque(maxlen=STRIKES)
@@ -88,14 +88,12 @@ class TurnTrial:
             self._accuse(motion.wheels_rad - motion.turn_rad, motion, 0.0, "no laser is there to ask")
 
     def put_right(self, stamp_s: float, off_rad: float) -> None:
-        """Somebody who sees where the robot points has moved the heading by so much. A second time soon after, and it drifts."""
-        since_s, self._put_right_s = stamp_s - self._put_right_s, stamp_s
-        if since_s >= AGAIN_S or not self.trusts_gyro:
+        """Somebody who sees where a car points has moved the heading by so much. What a drift there is shows at rest; too often, and it is none."""
+        if stamp_s < self.rests_until_s or not self.trusts_gyro:
             return
-        self.drift_radps -= off_rad / since_s
-        dps = math.degrees(-off_rad / since_s)
-        told = f"the heading had to be put right by {math.degrees(off_rad):+.0f} deg within {since_s:.1f} s: the gyro drifts by {dps:+.1f} deg/s"
-        self._tell_drift(told, stamp_s if abs(off_rad) > MUCH_RADPS * since_s else None)
+        self.rests_until_s = stamp_s + REST_S
+        if self._strike(stamp_s):
+            self.refuse(f"the heading had to be put right, this time by {math.degrees(off_rad):+.0f} deg, again and again")
 
     def bias_moved(self, by_radps: float) -> None:
         """The gyro's own bias was measured anew, higher by so much: what was taken off here for it is not needed any more."""
@@ -134,9 +132,12 @@ class TurnTrial:
 
     def _tell_drift(self, told: str, strike_s: float | None) -> None:
         """A drift was found; `strike_s`: it was a jump, at this time."""
-        if strike_s is not None:
-            self._strikes.append(strike_s)
-        if len(self._strikes) == STRIKES and self._strikes[-1] - self._strikes[0] < STRIKES_S:
+        if strike_s is not None and self._strike(strike_s):
             self.refuse(f"{told}. Again and again")
         else:
             self._news.append(News(GYRO_DRIFT, f"{told}. It is taken off from now on"))
+
+    def _strike(self, stamp_s: float) -> bool:
+        """True if that was one too many."""
+        self._strikes.append(stamp_s)
+        return len(self._strikes) == STRIKES and self._strikes[-1] - self._strikes[0] < STRIKES_S

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import pluto_bt.platforms
 from pluto_bt.cli import main
 from pluto_bt.commands.fault_formats import as_github, as_sarif
 from pluto_bt.inputs.ways_in_world import Ways, inner_radius_m
@@ -18,6 +19,7 @@ from pluto_bt.maps.world import Shape, World
 from pluto_bt.modules.robot_file import load_robot_file
 from pluto_bt.source import Fault
 
+PLATFORMS = Path(pluto_bt.platforms.__file__).parent
 MISSION = """<root BTCPP_format="4"><BehaviorTree ID="Main"><Sequence>
 {body}
 </Sequence></BehaviorTree></root>
@@ -163,6 +165,47 @@ def test_the_car_has_no_eyes_and_a_mapped_area(capsys: pytest.CaptureFixture[str
     assert checked(capsys, '<CarGoTo goal="13;5"/>', more=area, platform="car")[0] == ["2:16 error outside-map"]
     assert checked(capsys, '<CarGoTo goal="11.5;5"/>', more=area, platform="car")[0] == ["2:16 error outside-map"]
     assert checked(capsys, '<CarGoTo goal="12;5"/>', platform="car")[0] == ["2:16 error leg-blocked"]
+
+
+@pytest.mark.parametrize(
+    ("edges", "platform", "settings", "warns"),
+    [
+        (("0,0 20,0 20,10 0,10",), "car", "", ["3:5 0.00 m"]),  # in line 3 the first: at the walls, and with the block in its middle
+        (("0.3,0.3 7.7,0.3 7.7,4.7 0.3,4.7",), "car", "", []),
+        (("0.3,0.3 7.8,0.3 7.8,4.7 0.3,4.7",), "car", "", ["3:5 0.20 m"]),
+        (("0,0 7,0 7,2 0,2", "0.3,2 7.7,2 7.7,4 0.3,4"), "car", "", ["3:5 0.00 m"]),  # where two meet is no edge
+        (("0,0 20,0 20,10 0,10",), "pioneer", "", []),  # it sees the walls
+        (("0,0 7.7,0 7.7,4.7 0,4.7",), "keeping.toml", "[filter]\narea_margin_m = 0.28\n", []),
+        (("0,0 7.9,0 7.9,4.7 0,4.7",), "keeping.toml", "[filter]\narea_margin_m = 0.1\n", ["3:5 0.10 m"]),
+    ],
+)
+def test_a_mapped_area_that_lets_a_blind_robot_touch_something_is_warned_of(
+    edges: tuple[str, ...], platform: str, settings: str, warns: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    areas = "\n    ".join(f'<area id="a{i}" kind="map">{edge}</area>' for i, edge in enumerate(edges))
+    Path("w.xml").write_text(f'''<world name="w"><wall id="rim">0,0 20,0 20,10 0,10 0,0</wall>
+    <polygon id="block">8,3 10,3 10,7 8,7</polygon>
+    {areas}</world>''', encoding="utf-8")
+    Path("keeping.toml").write_text((PLATFORMS / "car.toml").read_text(encoding="utf-8") + settings, encoding="utf-8")
+    assert main(["check", "w.xml", "--platform", platform, "--format", "json"]) == 0
+    faults = json.loads(capsys.readouterr().out)["faults"]
+    assert [f"{one['line']}:{one['column']} {one['found']}" for one in faults if one["code"] == "area-near-wall"] == warns
+
+
+def test_a_map_of_cells_counts_like_walls(capsys: pytest.CaptureFixture[str]) -> None:
+    from PIL import Image
+
+    cells = np.full((100, 100), 254, dtype=np.uint8)
+    cells[:, 80:82] = 0
+    Image.fromarray(cells).save("m.png")
+    of_cells = "image: m.png\nresolution: 0.1\norigin: [0, 0, 0]\noccupied_thresh: 0.65\nfree_thresh: 0.2\nnegate: 0\n"
+    Path("m.yaml").write_text(of_cells, encoding="utf-8")
+    for edge_m, n_warnings in ((7.9, 1), (7.7, 0)):
+        area = f'<area id="a" kind="map">1,1 {edge_m},1 {edge_m},9 1,9</area>'
+        Path("w.xml").write_text(f'<world name="w"><map src="m.yaml"/>{area}</world>', encoding="utf-8")
+        assert main(["check", "w.xml", "--platform", "car", "--format", "json"]) == 0
+        faults = json.loads(capsys.readouterr().out)["faults"]
+        assert [one["code"] for one in faults] == ["area-near-wall"] * n_warnings, faults
 
 
 def test_a_leaf_that_the_worlds_script_names_must_be_there(capsys: pytest.CaptureFixture[str]) -> None:

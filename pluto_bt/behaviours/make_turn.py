@@ -19,7 +19,7 @@ IN_PLACE_RADPS: Final = math.radians(30.0)
 
 
 class MakeTurn(SteppedLeaf):
-    """Turns by `angle_deg` relative to the present heading, clockwise positive (the only clockwise angle in missions), until within 10°."""
+    """Turns by `angle_deg` relative to the present heading, clockwise positive (the only such angle in missions), to within 10°; 30 s: `timeout`."""
 
     WAY: ClassVar = "stays"
     INPUT_PORTS = {
@@ -43,7 +43,9 @@ class MakeTurn(SteppedLeaf):
         if self._turn.is_done(heading):
             return self.succeed(f"{to_go:.0f} deg off")
         if self.elapsed_s - self._turning_s >= LIMIT_S:
-            return self.fail("timeout", f"not turned within {LIMIT_S:g} s, {to_go:.0f} deg off")
+            held = self._heard
+            why = f"; {held.reason}: {held.text}" if held is not None and held.reason else ""
+            return self.fail("timeout", f"not turned within {LIMIT_S:g} s, {to_go:.0f} deg off{why}")
         if robot.platform.body.kinematics == "ackermann":
             self.steer(robot, self._turn.steering_percent)
         else:

@@ -68,7 +68,7 @@ class MotionLeaf(RobotLeaf):
         if not self._began:
             self._began = True
             ended = self.begin(robot)
-            return self.wait("starting") if ended is None else ended
+            return self.wait("starting") if ended is None else self._told(ended)
         if was_paused:  # that time does not count
             self._start_s += self._gap_s
             self.resume(robot)
@@ -213,4 +213,6 @@ def _waiting_word(status: FVectorState) -> str:
         return "bumper"
     if code == LinkStatus.LASER_FATAL:
         return "laser-fatal"
+    if status.reason == "outside-map" and status.data != (0.0, 0.0):
+        return ""  # it slows before the edge of its area
     return status.reason if status.reason in WAITING else ""

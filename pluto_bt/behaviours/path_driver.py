@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from typing import Final
 
-import numpy as np
 from py_trees.common import Status
 
 from pluto_bt.behaviours.map_path import MapPath
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
-from pluto_bt.behaviours.robot import Robot
+from pluto_bt.behaviours.robot import NO_POINTS, Robot
 from pluto_bt.blackboard.codes import CommandType, GotoStatus, LinkStatus
 from pluto_bt.blackboard.messages import FVectorState
 from pluto_bt.skills.outline import Planar
@@ -20,7 +19,6 @@ NEW_POINT_M: Final = 0.4  # a point ahead that has moved less is not worth a new
 POINT_TOLERANCE_M: Final = 0.3
 TURNED_RAD: Final = math.radians(5.0)
 TURN_LIMIT_S: Final = 20.0
-NO_POINTS: Final = np.zeros((0, 2))
 REFRESH_S: Final = 2.0  # drive would time out
 
 

@@ -39,10 +39,14 @@ REASONS: Final[dict[str, Reason]] = {
     "command-timeout": Reason("drive had no new command for 4 s and stopped", "send commands more often, or use a leaf that refreshes its command"),
     "estop": Reason("the emergency stop is latched", "see to the cause, release the stop, then resume the mission or command anew"),
     "executive-silent": Reason("the executive has stopped working, so nothing may move", "look at the leaf or module named in the events"),
+    "gyro-stale": Reason("the gyro delivers nothing, and the car does not know where it points", "check the gyro and its cable"),
     "hindered": Reason("the car is told to drive and its wheels stand still", "remove the obstacle; the car has no sensor that would see it", True),
     "laser-fatal": Reason("the laser had a fatal error and did not come back in time", "wait for its reboot (about 20 s), then try again"),
     "laser-stale": Reason("the laser is asked for and delivers nothing that can be trusted", "check the laser, or choose avoid=sonar"),
     "lost": Reason("the robot is not where wheels and gyro brought it, or its position is too uncertain", "post its pose, then go on"),
+    "marker-stale": Reason(
+        "no marker has passed for long, and the car reckons with wheels and gyro alone", "bring it under a marker, or look at camera and server"
+    ),
     "no-device": Reason("the platform has no such device", "run the mission on a platform that has it"),
     "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
     "no-input": Reason("a port that the leaf needs has no value on this way", "write its entry on every way that leads there, see the message"),
@@ -58,6 +62,7 @@ REASONS: Final[dict[str, Reason]] = {
     "outside-map": Reason("the goal, or the straight way to it, leaves the mapped area", "choose a goal inside the mapped area, in straight reach"),
     "outside-rectangle": Reason("the goal or the start is outside the rectangle", "choose a goal inside, or set another rectangle"),
     "sonar-stale": Reason("the sonar is asked for and delivers nothing that can be trusted", "check the sonar, or choose avoid=laser"),
+    "speed-stale": Reason("the wheel speed sensor delivers nothing, and the car does not know how far it has driven", "check the sensor and its bus"),
     "stopped": Reason("an operator stopped the robot", "resume the mission or send a new command"),
     "stuck": Reason("the robot gets no farther towards its goal or along its wall", "choose a goal with a clear way, or free it by hand", True),
     "target-lost": Reason("the one who was followed is not seen any more", "start following again when the target is near", True),
@@ -81,6 +86,8 @@ WAITING: Final[dict[str, float]] = {
     **dict.fromkeys(SENSORS, OUTAGE_S + SETTLE_S),
     "laser-fatal": 30.0,  # the reboot takes about 20 s
     "no-pose": 3.0,
+    "gyro-stale": 3.0,
+    "speed-stale": 3.0,
     "lost": 3.0,
     "no-wall": 3.0,
     "wall-lost": 0.0,
@@ -88,6 +95,7 @@ WAITING: Final[dict[str, float]] = {
     "odometry-frozen": 10.0,  # the wheels try again every second; escaping from it is another leaf's work
     "chain-stopped": 1.0,
     "stopped": 1.0,
+    "outside-map": 1.0,  # a car that left its area and is not on an arc that leads back
 }
 
 

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from pluto_bt.blackboard.codes import MotionStatus, MovetoStatus
 from pluto_bt.blackboard.messages import ActuatorState, FloatArray, FVectorState, Message, Pair, Pose
 from pluto_bt.maps.platform import Platform
@@ -14,6 +16,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.sight import ScanView
 
 NO_DOUBT = FVectorState(0.0)
+NO_POINTS = np.zeros((0, 2))
 
 if TYPE_CHECKING:
     from pluto_bt.behaviours.navigation import Navigation
@@ -96,7 +99,7 @@ class Robot(Protocol):
         """Tell localisation where the robot stands on the map; what was posted, None if another module keeps the pose."""
 
     def show_path(self, points: FloatArray) -> None:
-        """The path (n, 2) of the map that is followed from now on, for who looks on; no points = none any more."""
+        """The path (n, 2) of the map that is followed from now on, for who looks on; one point = a goal without a planned way, none = no more."""
 
     def read_alarms(self) -> None:
         """Take back the alarms of `imu/alarms` that stay until they are read."""
@@ -112,9 +115,9 @@ class Robot(Protocol):
 
 
 def pose_doubt(robot: Robot) -> FVectorState:
-    """Why the pose must not be believed: `reason` is `lost` or `no-pose`, or "" if nothing speaks against it."""
+    """Why the pose must not be believed: `reason` is one of `PLACELESS`, or "" if nothing speaks against it."""
     check = robot.newest("Localization/Check")
-    return check if isinstance(check, FVectorState) and check.reason in (reasons.LOST, reasons.NO_POSE) else NO_DOUBT
+    return check if isinstance(check, FVectorState) and check.reason in reasons.PLACELESS else NO_DOUBT
 
 
 def why_no_pose(robot: Robot) -> tuple[str, str]:

@@ -11,14 +11,17 @@ from py_trees.common import Status
 from pluto_bt.behaviours.motion_leaf import MotionLeaf
 from pluto_bt.behaviours.robot import Robot, pose_doubt, pose_of
 from pluto_bt.blackboard.codes import CommandType
-from pluto_bt.blackboard.messages import ActuatorState, ImuState, MarkerState, SpeedState
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, ImuState, MarkerState, SpeedState
 from pluto_bt.skills.car_goto import STEP_S
 from pluto_bt.skills.car_steering import turn_rate
-from pluto_bt.skills.limits import clamp
+from pluto_bt.skills.limits import STILL, clamp
+from pluto_bt.skills.reasons import NO_POSE
 
 GYRO_WAIT_S: Final = 90.0  # the bias takes 1000 samples, 20 s at 50 Hz, and starts again when the car is moved
 MARKER_WAIT_S: Final = 5.0
+ELSEWHERE_WAIT_S: Final = 10.0  # so far (m) the gate lets a car have been carried in that time, and it believes then
 POSE_WAIT_S: Final = 3.0
+REST_WAIT_S: Final = 6.0  # the heading was wrong: it rolls to a stop, and finds its gyro's bias at rest
 
 
 class SteppedLeaf(MotionLeaf):
@@ -29,12 +32,16 @@ class SteppedLeaf(MotionLeaf):
     def begin(self, robot: Robot) -> Status | None:
         """Nothing moves before the first decision."""
         self._next_step_s = self._ready_since_s = self._last_s
-        self._waits_for = ""
+        self._waits_for = self._doing = ""
+        self.is_driven = True  # False while the chain holds it back
         return self.prepare(robot) or self.follow(robot)
 
     def prepare(self, robot: Robot) -> Status | None:
         """Look at the ports. A status ends the leaf before anything moves."""
         return None
+
+    def restart(self) -> None:
+        """The robot stood by order or for want of a sensor, and goes on."""
 
     @abstractmethod
     def decide(self, robot: Robot, pose: tuple[float, float, float]) -> Status:
@@ -42,22 +49,27 @@ class SteppedLeaf(MotionLeaf):
 
     def resume(self, robot: Robot) -> None:
         """The next step posts anyway."""
+        self.restart()
         self._next_step_s, self._was_accepted, self._posted_s = self._last_s, False, self._last_s
         self._ticket = None
 
     def follow(self, robot: Robot) -> Status:
         """A step if one is due."""
         if self._last_s < self._next_step_s - 1e-6:
-            return Status.RUNNING
+            return self.wait(self._doing)
         self._next_step_s = max(self._next_step_s + STEP_S, self._last_s + 0.5 * STEP_S)
-        trouble = None if self._ticket is None else self.chain_trouble(robot, self.chain_status(robot))
+        status = self.chain_status(robot)
+        trouble = None if self._ticket is None else self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble
+        self.is_driven = status is None or not status.reason or status.data != STILL
         pose = pose_of(robot)
         missing, patience_s = self._missing(robot, pose)
         if missing or pose is None:
             return self._stand(robot, missing, patience_s)
-        self._waits_for = ""
+        if self._waits_for:
+            self._waits_for, self._heard = "", None
+            self.restart()
         return self.decide(robot, pose)
 
     def _missing(self, robot: Robot, pose: tuple[float, float, float] | None) -> tuple[str, float]:
@@ -67,13 +79,16 @@ class SteppedLeaf(MotionLeaf):
             gyro = robot.newest("dmu/state")
             if not isinstance(gyro, ImuState) or not gyro.bias_known:
                 return "waiting for the gyro's bias", GYRO_WAIT_S
-            if robot.is_stale("dmu/state"):
-                return "waiting for the gyro", POSE_WAIT_S
-        if self.NEEDS_MARKER and devices.marker is not None:
-            marker = robot.newest("car/marker")
-            if not isinstance(marker, MarkerState) or marker.accepted_count == 0:
-                return "waiting for an accepted marker", MARKER_WAIT_S
-        return (pose_doubt(robot).text or "waiting for a pose", POSE_WAIT_S) if pose is None else ("", 0.0)
+        marker = robot.newest("car/marker") if devices.marker is not None else None
+        is_seen = isinstance(marker, MarkerState) and marker.accepted_count > 0
+        if self.NEEDS_MARKER and devices.marker is not None and not is_seen:
+            return "waiting for an accepted marker", MARKER_WAIT_S
+        if isinstance(marker, MarkerState) and marker.is_elsewhere:
+            return pose_doubt(robot).text or "the markers see it elsewhere", ELSEWHERE_WAIT_S
+        if pose is not None:
+            return "", 0.0
+        doubt = pose_doubt(robot)
+        return doubt.text or "waiting for a pose", REST_WAIT_S if doubt.reason == NO_POSE and devices.marker is not None else POSE_WAIT_S
 
     def _stand(self, robot: Robot, missing: str, patience_s: float) -> Status:
         if missing != self._waits_for:
@@ -82,7 +97,15 @@ class SteppedLeaf(MotionLeaf):
             return self.fail(pose_doubt(robot).reason or "no-pose", f"{missing}, {patience_s:g} s in vain")
         if self._moves:
             self.post(robot, CommandType.VELOCITY)
-        return self.wait(missing)
+        self._heard = pose_doubt(robot)
+        if not self._heard.reason:
+            self._heard = FVectorState(self._last_s, reason="no-pose", text=missing)
+        return self.wait("stands")
+
+    def wait(self, text: str) -> Status:
+        """RUNNING; an early tick says the same again."""
+        self._doing = text
+        return super().wait(text)
 
     def steer(self, robot: Robot, steering_percent: float) -> None:
         """Drive with the car's steering (percent, + = right) at the port's speed."""
@@ -96,9 +119,9 @@ class SteppedLeaf(MotionLeaf):
 
 
 def speed_of(robot: Robot) -> float:
-    """How fast the wheels turn, unsigned: the car's own sensor where there is one, else the odometry."""
+    """How fast the wheels turn, unsigned: the car's own sensor where there is one, else the odometry. NaN while it says nothing."""
     if robot.platform.devices.speed is not None:
         speed = robot.newest("car/speed")
-        return speed.speed_mps if isinstance(speed, SpeedState) and not robot.is_stale("car/speed") else 0.0
+        return speed.speed_mps if isinstance(speed, SpeedState) and not robot.is_stale("car/speed") else math.nan
     raw = robot.newest("ATRV2/Drive/Raw")
-    return abs(raw.velocity[0]) if isinstance(raw, ActuatorState) and not robot.is_stale("ATRV2/Drive/Raw") else 0.0
+    return abs(raw.velocity[0]) if isinstance(raw, ActuatorState) and not robot.is_stale("ATRV2/Drive/Raw") else math.nan

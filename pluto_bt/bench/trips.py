@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from pluto_bt.bench.row import BenchRow
+from pluto_bt.bench.trip_faults import MUD, TROUBLES, blame, troubled
 from pluto_bt.files import package_root
 from pluto_bt.inputs.reading import Inputs
 from pluto_bt.maps.load import load_world
@@ -23,6 +24,7 @@ from pluto_bt.result import RunResult
 from pluto_bt.runner import make_runner
 
 SEEDS, LOOPS = 40, 100
+TROUBLED_SEEDS = 8  # of each trouble
 TARGET_SEEDS = 38
 DRIFT_DPS = 0.02
 START = (0.5, 12.0, math.pi / 2)
@@ -45,10 +47,12 @@ def corridor(seed: int, anywhere: bool = False, drift_dps: float = DRIFT_DPS) ->
     return replace(world, markers=tuple(Marker(i, float(x), float(y), float(theta)) for i, (x, y, theta) in enumerate(hung)))
 
 
-def trip(seed: int, loops: int = LOOPS, anywhere: bool = False) -> RunResult:
-    """One trip of so many loops."""
+def trip(seed: int, loops: int = LOOPS, anywhere: bool = False, trouble: str = "") -> RunResult:
+    """One trip of so many loops; `trouble`: a name of TROUBLES."""
     mission = package_root() / "missions" / "trip2.xml"
-    inputs = Inputs(mission, corridor(seed, anywhere), None, load_robot_file("car"), START, seed, {"max_loops": str(loops)}, None)
+    world = corridor(seed, anywhere)
+    world = troubled(world, trouble, seed) if trouble else world
+    inputs = Inputs(mission, world, None, load_robot_file("car"), START, seed, {"max_loops": str(loops)}, None)
     return make_runner(inputs, max_time_s=LONGEST_LOOP_S * loops).run()
 
 
@@ -63,8 +67,19 @@ def rows_of(name: str, trips: Iterable[RunResult], target: str) -> list[BenchRow
     return [BenchRow(name, len(good), f"of {len(done)}", target, note)]
 
 
+def troubled_rows() -> list[BenchRow]:
+    """For each trouble how many of its trips did what none may do."""
+    rows = []
+    for name in (*TROUBLES, MUD):
+        done = [trip(seed, 2, trouble=name) for seed in range(TROUBLED_SEEDS)]
+        bad = [f"seed {one.seed} {word}" for one in done if (word := blame(name, one))]
+        note = "; ".join([f"{sum(one.result == 'SUCCESS' for one in done)} closed their loops", *bad])
+        rows.append(BenchRow(f"  {name}: wrong", len(bad), f"of {len(done)}", "<= 0", note))
+    return rows
+
+
 def run() -> list[BenchRow]:
-    """Forty trips in the shipped corridor, and forty shorter ones with markers hung at random."""
+    """Forty trips in the shipped corridor, forty shorter ones with markers hung at random, and some with a trouble each."""
     shipped = rows_of(f"seeds that close trip2 {LOOPS} times", (trip(seed) for seed in range(SEEDS)), f">= {TARGET_SEEDS}")
     drawn = rows_of("  20 times with markers anywhere", (trip(seed, LOOPS // 5, anywhere=True) for seed in range(SEEDS)), f">= {TARGET_SEEDS}")
-    return [*shipped, *drawn]
+    return [*shipped, *drawn, *troubled_rows()]

@@ -158,7 +158,10 @@ class GasState(Message, frozen=True, gc=False):
 
 
 class MarkerState(Message, frozen=True, gc=False):
-    """A position from a camera marker, in the map frame, and what the gate said of it ("" = accepted)."""
+    """A position from a camera marker, in the map frame, and what the gate said of it ("" = accepted).
+
+    `is_elsewhere`: the last markers tell of another place than was reckoned, and can be right.
+    """
 
     marker: int = 0
     x_m: float = 0.0
@@ -167,6 +170,7 @@ class MarkerState(Message, frozen=True, gc=False):
     quality: float = 0.0
     refused: str = ""
     accepted_count: int = 0
+    is_elsewhere: bool = False
 
 
 class SpeedState(Message, frozen=True, gc=False):
@@ -207,7 +211,7 @@ class JobState(Message, frozen=True, gc=False):
 
 
 class PathState(Message, frozen=True, gc=False):
-    """A path that is followed, in the map frame: x y x y …; empty = none."""
+    """A path that is followed, in the map frame: x y x y …; one point = a goal without a planned way; empty = none."""
 
     points_m: tuple[float, ...] = ()
 

@@ -86,7 +86,7 @@ TOPICS: tuple[Topic, ...] = (
     Topic("Localization/Post_Pose",            Pose,          "local",     0.0,   0.0,  "interface 2: the improved pose accepted last; setter < 0 = robot pose, else laser pose"),
     Topic("Localization/Pose",                 Pose,          "local",     0.02,  0.2,  "interface 3: 0 adjusted by 2", history=64),
     Topic("Localization/Laser_Pose",           LaserPose,     "local",     0.2,   0.8,  "interface 4: 1 adjusted by 2"),
-    Topic("Localization/Check",                FVectorState,  "local",     0.0,   0.0,  "do wheels, gyro and laser agree? element[0] = 0 they do, 1 one is corrected, 2 lost; data = share of the wheels' way believed, drift taken off the gyro (rad/s), share of the scan that fits"),
+    Topic("Localization/Check",                FVectorState,  "local",     0.0,   0.0,  "do wheels, gyro and laser agree? element[0] = 0 they do, 1 one is corrected, 2 lost, 3 a sensor or all markers are silent; data = share of the wheels' way believed, drift taken off the gyro (rad/s), share of the scan that fits"),
     Topic("filter/status",                     FVectorState,  "filter",    0.05,  0.3,  "verdict of the stop filter: element[0], why, and the velocities let through"),
     Topic("drive/command",                     ActuatorState, "drive",     0.0,   0.0,  "the command the drive accepted last"),
     Topic("drive/status",                      FVectorState,  "drive",     0.05,  0.3,  "status of the drive: element[0]; data = velocities in force"),

@@ -20,7 +20,7 @@ BENCHES = {
     "repeat": "runs with one seed: equal traces",
     "refusals": "the worst of broken inputs: time and memory until they are refused",
     "startup": "`pluto --help` and the first tick of a mission",
-    "trips": "the car's trip2, 100 loops on 40 seeds",
+    "trips": "the car's trip2, 100 loops on 40 seeds, and with one thing wrong",
     "jbot": "1000 feet out and back between trees: where the robot believes to be",
     "replay": "100 recorded runs executed again, in lockstep and in threads; what recording costs",
     "resume": "kill -9 at every tick of a mission, then go on",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pluto_bt.files import find_file
+from pluto_bt.inputs.area_edge import check_area_edge
 from pluto_bt.inputs.missions import examine_file
 from pluto_bt.inputs.option_values import Pose, read_ports, read_seed, read_start
 from pluto_bt.inputs.plugins import load_plugins
@@ -107,6 +108,8 @@ def check_world(
     robot = _robot(platform, world, (), faults, None)
     if world is not None:
         check_together(world, robot, start or world.robot.pose, asked, faults)
+        if robot is not None:
+            check_area_edge(world, robot, faults)
     return world, robot
 
 

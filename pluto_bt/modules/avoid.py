@@ -113,7 +113,7 @@ class Avoid:
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
         check: FVectorState | None = self._check()
         senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), self._passers_by.are_awaited(now_s))
-        if check is None or check.reason not in (reasons.LOST, reasons.NO_POSE):
+        if check is None or check.reason not in reasons.PLACELESS:
             return senses
         return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from pluto_bt.blackboard.inbox import Letter
-from pluto_bt.blackboard.messages import ActuatorState, LaserScan, Pose, SonarState
+from pluto_bt.blackboard.messages import ActuatorState, FVectorState, LaserScan, Pose, SonarState
 from pluto_bt.blackboard.poses import pose_at
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.link import newest
@@ -16,7 +16,7 @@ from pluto_bt.skills.limits import STILL, Twist
 from pluto_bt.skills.map_area import MapArea
 from pluto_bt.skills.outline import Planar
 from pluto_bt.skills.stop_filter import FilterSenses, StopFilter
-from pluto_bt.skills.verdict import Verdict
+from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
 DEAD_RECKONING = "Localization/Dead-Reckoning"
 IDLE_S = 0.06  # a turn of its own comes only when no command came for so long
@@ -34,7 +34,7 @@ class Filter:
         self._raw, self._bumper = newest(context, "ATRV2/Drive/Raw"), newest(context, "ATRV2/Bumper")
         self._dead, self._pose = newest(context, DEAD_RECKONING), newest(context, "Localization/Pose")
         self._scan_topic, self._sonar_topic = newest(context, "sick/scan"), newest(context, "ATRV2/Sonar")
-        self._check, self._was_lost = newest(context, "Localization/Check"), False
+        self._check, self._was_lost, self._doubt = newest(context, "Localization/Check"), False, ALL_WELL
         self._scan: LaserScan | None = None
         self._laser: tuple[Planar | None, float, str] = (None, 0.0, "")
         self._sonar: SonarState | None = None
@@ -63,8 +63,8 @@ class Filter:
             return  # the drive says the same thing twice at one moment
         if letter is not None:
             self._wanted, self._commanded_s = STILL if letter.is_stop else letter.command.velocity, now_s
+        self._look_at_check()
         senses = self._senses()
-        self._forget_if_lost()
         if now_s > self._stepped_s:  # two commands of one moment need one look
             self.skill.look(now_s, senses)
         self._stepped_s = now_s
@@ -76,9 +76,11 @@ class Filter:
             self._base.post("filter", ActuatorState(now_s, 0, (0.0, 0.0), out))
         self._status.put(self.skill.status(now_s), now_s)
 
-    def _forget_if_lost(self) -> None:
-        """Carried to another place, what was seen round the robot is not there."""
-        check = self._check()
+    def _look_at_check(self) -> None:
+        """Carried to another place, what was seen round the robot is not there. With a silent sensor nobody knows a car's place."""
+        check: FVectorState | None = self._check()
+        is_silent = check is not None and check.reason in (reasons.GYRO_STALE, reasons.SPEED_STALE)
+        self._doubt = Verdict(reason=check.reason, text=check.text) if check is not None and is_silent else ALL_WELL
         is_lost = check is not None and check.reason == reasons.LOST
         if is_lost and not self._was_lost:
             self.skill.forget()
@@ -107,7 +109,7 @@ class Filter:
         self._find_sonar(dead)
         return FilterSenses(
             self._raw(), None if dead is None else (dead.stamp_s, _planar(dead)), None if pose is None else (pose.stamp_s, _planar(pose)),
-            self._scan, *self._laser, self._sonar, self._sonar_at, self._bumper(), self._context.silent_s("executive"),
+            self._scan, *self._laser, self._sonar, self._sonar_at, self._bumper(), self._context.silent_s("executive"), self._doubt,
         )  # fmt: skip
 
     def _find_scan(self) -> None:

@@ -23,6 +23,7 @@ from pluto_bt.blackboard.messages import Pose, ScanTiming
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import LaserPlace, laser_pose
+from pluto_bt.modules.marker_watch import MarkerWatch
 from pluto_bt.modules.motion_check_shown import MotionCheckShown
 from pluto_bt.modules.motion_sources import MotionSources
 from pluto_bt.modules.post_box import refusal
@@ -61,6 +62,7 @@ class Local:
         self._sources = MotionSources(context, p.step_noise(), p.yaw_enable)
         self._check = MotionCheckShown(context, self._sources.check)
         self._wheels_know_turns = context.platform.body.kinematics != "ackermann"
+        self._markers = MarkerWatch(context)
         self._place = LaserPlace(context)
         self._box = context.posts
         self.track = Track(context.start_pose)
@@ -94,7 +96,7 @@ class Local:
         if step is not None or posts:
             self._publish_poses(now_s)
         self._serve_scan(now_s)
-        self._check.tell(now_s)
+        self._check.tell(now_s, self._sources.silence if self._sources.silence[0] else self._markers.silence(now_s))
 
     def _publish_poses(self, now_s: float) -> None:
         now = self.track.now

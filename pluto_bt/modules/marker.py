@@ -10,7 +10,8 @@ import msgspec
 from msgspec import Meta
 
 from drivers.records import MarkerRecord
-from estimation.marker_gate import BAD_HEADING, MarkerGate
+from estimation.marker_gate import BAD_HEADING, TOO_FAST, MarkerGate
+from estimation.marker_trust import Contradiction, MarkerTrust
 from pluto_bt.blackboard.codes import Setter
 from pluto_bt.blackboard.messages import MarkerState, Pose
 from pluto_bt.blackboard.poses import pose_at
@@ -19,6 +20,8 @@ from pluto_bt.modules.context import Context
 
 JUDGED = 3  # accepted markers whose headings are judged together
 TOO_OLD = "too-old"  # nobody remembers where the robot pointed then
+REPEATED = "repeated"  # the same numbers again
+MOVED_M = 0.05
 
 
 class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -32,6 +35,7 @@ class MarkerParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     heading_noise_deg: Annotated[float, Meta(gt=0, description="standard deviation of a marker's heading")] = 2.0
     most_heading_bias_deg: Annotated[float, Meta(gt=0, description="median of the last three; more: the gyro is wrong")] = 8.0
     far_m: Annotated[float, Meta(gt=0, description="from the estimate; an accepted marker farther off must be confirmed by the next")] = 0.5
+    silent_after_s: Annotated[float, Meta(gt=0, description="when none has passed for so long it is told: marker-stale")] = 10.0
 
 
 class Marker:
@@ -39,8 +43,9 @@ class Marker:
     is the camera's, the heading is the estimate, pulled a little towards the camera's, else the gyro's drift would end long runs.
 
     The gate lets nonsense pass when there is nothing to compare it with: the first marker, or one after a long shadow. So an accepted
-    marker far from the estimate moves the pose only if the accepted one before was far as well. And it refuses for ever whoever was carried
-    and turned: where several markers in a row, not one alone that may hang wrong, see the car turned by the same angle, they are right.
+    marker far from the estimate moves the pose only if the one before told the same. And it refuses for ever whoever was carried and turned:
+    where three in a row see the car turned by the same angle, they are right. One that never agreed before and stands alone may hang wrong;
+    it moves nothing. While those who can be right contradict the estimate the car should stand: `is_elsewhere`.
     """
 
     def __init__(self, context: Context) -> None:
@@ -51,10 +56,10 @@ class Marker:
         self._start_rad = context.start_pose[2]
         p = context.parameters(MarkerParameters)
         self._parameters = p
-        self._was_far = False
+        self._last: tuple[tuple[float, ...], tuple[float, ...]] | None = None  # numbers of the last new reading, and dead reckoning then
         self._say = context.say
         self._off_rad: deque[float] = deque(maxlen=JUDGED)  # heading of the last accepted markers less the estimate's
-        self._refused_rad: deque[tuple[int, float]] = deque(maxlen=JUDGED)  # marker and the same of those refused in a row for it
+        self._trust = MarkerTrust(math.radians(p.most_heading_bias_deg))
         self.gate = MarkerGate(p.min_quality, math.radians(p.max_heading_error_deg), p.max_speed_mps)
 
     def start(self, now_s: float) -> None:
@@ -76,43 +81,54 @@ class Marker:
         pose = pose or newest
         heading_rad = self._start_rad if pose is None else pose.pose[3]
         seen = (r.x_m, r.y_m, r.theta_rad)
-        refused = TOO_OLD if is_past else self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
-        if refused == BAD_HEADING and self._is_turned(r, heading_rad):
-            heading_rad, self._was_far = r.theta_rad, True  # the markers before confirm this one
-            self.gate.forget()
-            refused = self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
-        self._state.put(MarkerState(r.stamp_s, r.marker, r.x_m, r.y_m, r.theta_rad, r.quality, refused, self.gate.accepted_count), now_s)
-        if not refused:
-            self._refused_rad.clear()
-        if not refused and self._is_credible(r, pose):
+        refused = TOO_OLD if is_past else self._repeated(r) or self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
+        if self._trusts(r, refused, pose, heading_rad):
+            if refused == BAD_HEADING:
+                heading_rad = r.theta_rad
+                self.gate.forget()
+                refused = self.gate.judge(r.stamp_s, seen, r.quality, heading_rad)
+            self._trust.agree(r.marker)
             self._post(r, heading_rad, 0.0 if pose is None else pose.covariance[8])
+        passed = self.gate.accepted_count
+        self._state.put(MarkerState(r.stamp_s, r.marker, *seen, r.quality, refused, passed, self._trust.is_elsewhere), now_s)
 
-    def _is_credible(self, r: MarkerRecord, pose: Pose | None) -> bool:
-        """True near the estimate, or for the second far one in a row."""
-        if pose is None:
-            return True
+    def _repeated(self, r: MarkerRecord) -> str:
+        """A camera that sees the same to the last digit though the car has moved on looks at nothing."""
+        sample = self._board.newest("Localization/Dead-Reckoning")
+        here = sample.value.pose[:2] if sample is not None and isinstance(sample.value, Pose) else (0.0, 0.0)
+        numbers, last = (r.x_m, r.y_m, r.theta_rad, r.quality), self._last
+        if last is not None and last[0] == numbers:
+            return REPEATED if math.dist(last[1], here) > MOVED_M else ""
+        self._last = (numbers, here)
+        return ""
+
+    def _trusts(self, r: MarkerRecord, refused: str, pose: Pose | None, heading_rad: float) -> bool:
+        """True if the reading is to move the pose: it is near the estimate, or one of several that tell the same and can be right."""
+        off = self._off(r, pose, heading_rad)
+        if off is None or refused not in ("", BAD_HEADING, TOO_FAST):
+            return False
+        if pose is None or (not refused and not self._is_far(off, pose)):
+            return not refused
+        self._trust.contradict(off)
+        if not refused:
+            return self._trust.alike > 1 and (self._trust.is_confirmed or self._trust.is_fresh)
+        is_turned = refused == BAD_HEADING and self._trust.alike >= JUDGED and self._trust.is_confirmed
+        if is_turned:
+            off_deg = math.degrees(off.theta_rad)
+            text = f"the markers see the car {off_deg:+.0f} deg from where it was thought to point: somebody has turned it, and they are believed"
+            self._say("warning", "pose-jump", "marker", text)
+        return is_turned
+
+    def _off(self, r: MarkerRecord, pose: Pose | None, heading_rad: float) -> Contradiction | None:
+        """The reading less the estimate; None if it makes no sense."""
+        x_m, y_m = (r.x_m, r.y_m) if pose is None else pose.pose[:2]
+        off = Contradiction(r.stamp_s, r.marker, r.x_m - x_m, r.y_m - y_m, wrap_angle(r.theta_rad - heading_rad))
+        return off if math.isfinite(off.x_m + off.y_m + off.theta_rad) else None
+
+    def _is_far(self, off: Contradiction, pose: Pose) -> bool:
+        """True if the estimate, with what it may be off by itself, does not explain the reading."""
         sigma_m = math.sqrt(max(0.0, pose.covariance[0] + pose.covariance[4]))
-        is_far = math.hypot(r.x_m - pose.pose[0], r.y_m - pose.pose[1]) > max(self._parameters.far_m, 3.0 * sigma_m)
-        was_far, self._was_far = self._was_far, is_far
-        return was_far or not is_far
-
-    def _is_turned(self, r: MarkerRecord, heading_rad: float) -> bool:
-        """True if the last readings, of more than one marker, all see the car turned away from the estimate by the same angle."""
-        off_rad = wrap_angle(r.theta_rad - heading_rad)
-        if not math.isfinite(off_rad):
-            return False
-        alike = math.radians(self._parameters.most_heading_bias_deg)
-        if any(abs(wrap_angle(off_rad - other_rad)) > alike for _, other_rad in self._refused_rad):
-            self._refused_rad.clear()
-        if r.marker not in {marker for marker, _ in self._refused_rad} or len(self._refused_rad) < JUDGED - 1:
-            self._refused_rad.append((r.marker, off_rad))
-        if len(self._refused_rad) < JUDGED or len({marker for marker, _ in self._refused_rad}) < 2:
-            return False
-        self._refused_rad.clear()
-        off_deg = math.degrees(off_rad)
-        text = f"several markers see the car {off_deg:+.0f} deg from where it was thought to point: somebody has turned it, and they are believed"
-        self._say("warning", "pose-jump", "marker", text)
-        return True
+        return math.hypot(off.x_m, off.y_m) > max(self._parameters.far_m, 3.0 * sigma_m)
 
     def _bias_rad(self, off_rad: float) -> float:
         """What most of the last `JUDGED` markers agree upon against the gyro, rad; 0 while it is small, or they are too few."""

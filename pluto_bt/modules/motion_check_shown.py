@@ -11,17 +11,20 @@ from pluto_bt.blackboard.messages import FloatArray, FVectorState, LaserScan
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.laser_poses import Arm
 from pluto_bt.modules.tilted_laser import LEVEL_RAD, TiltedLaser
-from pluto_bt.skills.reasons import NO_POSE
+from pluto_bt.skills.reasons import MARKER_STALE, NO_POSE
 from pluto_bt.skills.scan_watch import RETURNS, are_same
 
 FINE = (1.0, 0.0, True, False, False)
-AGREED, CORRECTED, IS_LOST = 0, 1, 2  # element[0] of the topic
+AGREED, CORRECTED, IS_LOST, SILENT = 0, 1, 2, 3  # element[0] of the topic
 SETTLING = "the heading was wrong and is being put right"
 MOST_PAN_RAD = 0.15  # from scan to scan: while the wrist moves faster its angle is not exact enough
 
 
 class MotionCheckShown:
-    """`Localization/Check` on each change: element[0] 0 the witnesses agree, 1 one is corrected, 2 lost; data = grip, drift rad/s, fit."""
+    """`Localization/Check` on each change: element[0] 0 the witnesses agree, 1 one is corrected, 2 lost, 3 one is silent.
+
+    Its data are grip, drift in rad/s, fit.
+    """
 
     def __init__(self, context: Context, check: MotionCheck) -> None:
         self._check, self._say = check, context.say
@@ -33,7 +36,7 @@ class MotionCheckShown:
         self._pan_rad = 0.0
         self._tilted = TiltedLaser(context.say)
         self._ranges_m: FloatArray | None = None
-        self._shown: tuple[float, float, bool, bool, bool] | None = None
+        self._shown: tuple[object, ...] | None = None
 
     def look(self, stamp_s: float, arm: Arm, then: Moment) -> None:
         """Give the scan of that stamp, when the robot was at `then`, to the check, if it is level."""
@@ -57,8 +60,8 @@ class MotionCheckShown:
         if was_lost and not self._check.lost:
             self._say("info", "found", "local", "a pose was posted: the robot is not lost any more")
 
-    def tell(self, now_s: float) -> None:
-        """Findings to the events, the state to the topic."""
+    def tell(self, now_s: float, silence: tuple[str, str] = ("", "")) -> None:
+        """Findings to the events, the state to the topic. `silence`: word and sentence of a sensor that says nothing."""
         check = self._check
         for word, text in check.news:
             level = "error" if word == LOST else "info" if word in (WHEELS_GRIP, FOUND) else "warning"
@@ -66,17 +69,26 @@ class MotionCheckShown:
             self._word, self._text = word, text
             self._lost_text = text if word == LOST else self._lost_text
         check.news.clear()
-        state = (check.way.grip, check.turn.drift_radps, check.turn.trusts_gyro, check.lost, check.turn.is_settling)
-        if state == self._shown:
+        settles = check.turn.is_settling or now_s < check.turn.rests_until_s
+        state = (check.way.grip, check.turn.drift_radps, check.turn.trusts_gyro, check.lost, settles)
+        if (state, silence[0]) == self._shown:
             return
-        self._shown = state
-        code = IS_LOST if check.lost else AGREED if state == FINE else CORRECTED
-        word, text = (self._word, self._text) if code != AGREED else ("", "")
-        if check.lost:
-            word, text = LOST, self._lost_text or self._text
-        elif check.turn.is_settling:
-            word, text = NO_POSE, SETTLING
+        self._shown = (state, silence[0])
+        code, word, text = self._state(state, silence)
         self._topic.put(FVectorState(now_s, (state[0], state[1], check.fits), (code,), word, text), now_s)
+
+    def _state(self, state: tuple[float, float, bool, bool, bool], silence: tuple[str, str]) -> tuple[int, str, str]:
+        """Code, word and sentence, the worst first: that nobody knows the place, who is silent, who is corrected."""
+        check = self._check
+        if check.lost:
+            return IS_LOST, LOST, self._lost_text or self._text
+        if silence[0] and silence[0] != MARKER_STALE:
+            return (IS_LOST if silence[0] == LOST else SILENT), *silence
+        if state[4]:
+            return CORRECTED, NO_POSE, SETTLING
+        if silence[0]:
+            return SILENT, *silence
+        return (AGREED, "", "") if state == FINE else (CORRECTED, self._word, self._text)
 
 
 def _has_equal_half(before: FloatArray, now: FloatArray, max_range_m: float) -> bool:

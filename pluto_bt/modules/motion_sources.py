@@ -14,6 +14,7 @@ from estimation.track import LEVEL, Tilt
 from pluto_bt.blackboard.messages import ActuatorState, ImuState, SpeedState
 from pluto_bt.blackboard.topics import TOPICS
 from pluto_bt.modules.context import Context
+from pluto_bt.skills import reasons
 
 STALE_AFTER_S = {topic.name: topic.stale_after_s for topic in TOPICS}
 
@@ -52,22 +53,30 @@ class WheelWay:
 
 
 class SpeedWay:
-    """Way from the car's unsigned wheel speed with the sign of the last command; its wheels know of no turn."""
+    """Way from the car's unsigned wheel speed, with the sign of the last command; turn as the base makes it out of the steering it was told.
+
+    While the wheel speed is silent, the base's own count stands in: the car stands then, but it rolls on to where it stands.
+    """
 
     def __init__(self, context: Context) -> None:
         self._speed = context.board.reader("car/speed")
         self._command = context.board.reader("ATRV2/Drive/Command")
+        self._base = WheelWay(context)
         self._signed = SignedSpeed()
+        self.age_s = 0.0  # of the wheel speed
 
     def step(self, now_s: float) -> tuple[float, float, float, float] | None:
-        """(stamp s, dt s, distance m, 0) each time it is called, None while the speed is missing or stale."""
-        sample, command = self._speed(), self._command()
-        if sample is None or not isinstance(sample.value, SpeedState):
-            return None
-        is_stale = now_s - sample.value.stamp_s > STALE_AFTER_S["car/speed"]
+        """(stamp s, dt s, distance m, turn rad) each time it is called; None while both are silent."""
+        sample, command, base = self._speed(), self._command(), self._base.step(now_s)
+        speed = sample.value if sample is not None and isinstance(sample.value, SpeedState) else None
+        self.age_s = now_s if speed is None else now_s - speed.stamp_s
+        is_silent = speed is None or self.age_s > STALE_AFTER_S["car/speed"]
         commanded = command.value.velocity[0] if command is not None and isinstance(command.value, ActuatorState) else 0.0
-        dt_s, way_m = self._signed.step(now_s, 0.0 if is_stale else sample.value.speed_mps, commanded)
-        return None if is_stale or dt_s <= 0.0 else (now_s, dt_s, way_m, 0.0)
+        dt_s, way_m = self._signed.step(now_s, 0.0 if speed is None else speed.speed_mps, commanded)
+        if dt_s <= 0.0 or (is_silent and base is None):
+            return None
+        counted_m, steered_rad = (0.0, 0.0) if base is None else base[2:]
+        return now_s, dt_s, counted_m if is_silent else way_m, steered_rad
 
 
 class MotionSources:
@@ -94,9 +103,20 @@ class MotionSources:
         limits = context.platform.limits
         able = Limits(limits.max_speed_mps, math.radians(limits.max_turn_rate_dps), laser.max_range_m if laser is not None else 0.0)
         self.check = MotionCheck(able, wheels_know_turns=not is_car, has_gyro=has_gyro, judges_turns=yaw_enable)
+        self._needs_gyro = is_car and has_gyro
+        self._gyro_age_s = 0.0
         self._bias_radps = 0.0
         self._sensor = context.board.reader(topic)
         self._stale_after_s = STALE_AFTER_S[topic]
+
+    @property
+    def silence(self) -> tuple[str, str]:
+        """Which sensor of a car says nothing, though nothing can stand in for it: word and sentence; "" if none."""
+        if isinstance(self._way, SpeedWay) and self._way.age_s > STALE_AFTER_S["car/speed"]:
+            return reasons.SPEED_STALE, "the wheel speed sensor says nothing: it is not known how far the car has driven"
+        if self._needs_gyro and self._gyro_age_s > self._stale_after_s:
+            return reasons.GYRO_STALE, "the gyro says nothing: it is not known where the car points"
+        return "", ""
 
     def step(self, now_s: float) -> Step | None:
         """The next step, or None if nothing new has come."""
@@ -118,9 +138,10 @@ class MotionSources:
         The heading is carried from its own, older stamp to `stamp_s` by its turn rate.
         """
         sample = self._sensor()
-        if sample is None or not isinstance(sample.value, ImuState) or now_s - sample.value.stamp_s > self._stale_after_s:
+        state = sample.value if sample is not None and isinstance(sample.value, ImuState) else None
+        self._gyro_age_s = now_s if state is None else now_s - state.stamp_s
+        if state is None or self._gyro_age_s > self._stale_after_s:
             return None, False, LEVEL
-        state = sample.value
         if state.bias_radps != self._bias_radps:
             self.check.bias_moved(state.bias_radps - self._bias_radps)
             self._bias_radps = state.bias_radps

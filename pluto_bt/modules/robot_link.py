@@ -123,9 +123,12 @@ class RobotLink:
         return self._context.mission_clock.now_s()
 
     def _note_goal(self, goal: Pair, now_s: float) -> None:
-        is_new = now_s - self._goal_s >= AMENDED_WITHIN_S and goal not in self.goals
+        if now_s - self._goal_s >= AMENDED_WITHIN_S:
+            self._keep_goal(goal)
         self._goal_s = now_s
-        if is_new and len(self.goals) < GOALS_KEPT:
+
+    def _keep_goal(self, goal: Pair) -> None:
+        if goal not in self.goals and len(self.goals) < GOALS_KEPT:
             self.goals.append(goal)
 
     def status(self, ticket: Ticket) -> FVectorState | None:
@@ -165,7 +168,9 @@ class RobotLink:
         return None if self._context.posts.post(SOURCE, pose) else pose
 
     def show_path(self, points: FloatArray) -> None:
-        """The path that is followed, as the topic `map/path`."""
+        """The path that is followed, as the topic `map/path`. The end of one without a way is a goal for pictures too: nobody else commands it."""
+        if len(points) == 1:
+            self._keep_goal((float(points[0, 0]), float(points[0, 1])))
         self._path = self._path or self._context.board.publisher("map/path", "executive")
         now_s = self.now_s()
         self._path.put(PathState(now_s, tuple(points.ravel().tolist())), now_s)

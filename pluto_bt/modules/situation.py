@@ -22,6 +22,7 @@ class SituationWatch:
         self._context = context
         self._links = {name: newest(context, topic) for name, topic in LINKS.items()}
         self._raw = newest(context, RAW)
+        self._turns_in_place = context.platform.body.kinematics != "ackermann"
         self._drive_command = newest(context, "drive/command")
         self._told: dict[str, tuple[FVectorState, Link]] = {}
 
@@ -35,7 +36,8 @@ class SituationWatch:
         stale = self._context.board.stale(now_s)
         return Situation(
             links=links, stale=stale, modules=modules, hold=("", "") if hold is None else (hold.word, hold.text),
-            moves=RAW not in stale and _is_moving(raw), wanted=isinstance(command, ActuatorState) and command.velocity != (0.0, 0.0),
+            moves=RAW not in stale and _is_moving(raw, self._turns_in_place),
+            wanted=isinstance(command, ActuatorState) and command.velocity != (0.0, 0.0),
             mission=("", "") if activity is None else (activity.state, activity.reason),
             ended=("", "") if ended is None else (ended.reason, ended.text),
         )  # fmt: skip
@@ -54,5 +56,6 @@ def _trouble(state: str, fault: str, error: str) -> str:
     return f"hung: {error}" if fault == "hang" else ": ".join(word for word in (state, error) if word)
 
 
-def _is_moving(raw: ActuatorState | None) -> bool:
-    return raw is not None and (abs(raw.velocity[0]) > STILL_MPS or abs(raw.velocity[1]) > STILL_RADPS)
+def _is_moving(raw: ActuatorState | None, turns_in_place: bool) -> bool:
+    """A car turns only by driving; what its base says beyond that is noise of its division."""
+    return raw is not None and (abs(raw.velocity[0]) > STILL_MPS or (turns_in_place and abs(raw.velocity[1]) > STILL_RADPS))

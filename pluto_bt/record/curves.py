@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from pluto_bt.blackboard.codes import CommandType, MotionCommand
-from pluto_bt.blackboard.messages import ActuatorState, FloatArray, Pose
+from pluto_bt.blackboard.messages import ActuatorState, FloatArray, PathState, Pose
 from pluto_bt.record.box import Box
 from pluto_bt.record.entries import LINKS, STATUS_OF_LETTER, Posted
 from pluto_bt.record.scans import LASER, SCAN, is_level, placed
@@ -17,6 +17,7 @@ from pluto_bt.record.story import leaves
 
 NO_RETURN_M: Final = 79.0  # the lasers of our logs say 80 m and more for nothing met
 POSE, ASKED, GIVEN, DRIVEN = "Localization/Pose", "drive/command", "ATRV2/Drive/Command", "ATRV2/Drive/Raw"
+PATH = "map/path"
 VELOCITIES: Final = {ASKED: "asked of the drive", GIVEN: "given to the base", DRIVEN: "driven"}
 AMENDED_WITHIN_S: Final = 1.0  # a goal so soon after the last one is the same order with other figures
 
@@ -67,15 +68,18 @@ def seen_of(box: Box, most: int = 400) -> FloatArray:
 
 
 def goals_of(box: Box) -> list[tuple[float, float]]:
-    """The places that trees sent the robot to, each once."""
-    goals: list[tuple[float, float]] = []
+    """The places that trees sent the robot to, each once: by a command, or steering a car there themselves, which shows as a path of one point."""
+    goals: list[tuple[float, tuple[float, float]]] = []
     last_s = -np.inf
     for tick in map(box.tick, range(len(box))):
         for command in filter(_is_goal, tick.commands):
-            if tick.t_s - last_s >= AMENDED_WITHIN_S and command.position not in goals:
-                goals.append(command.position)
+            if tick.t_s - last_s >= AMENDED_WITHIN_S:
+                goals.append((tick.t_s, command.position))
             last_s = tick.t_s
-    return goals
+    for sample in box.samples([PATH])[PATH]:
+        if isinstance(sample.value, PathState) and len(sample.value.points_m) == 2:
+            goals.append((sample.written_s, (sample.value.points_m[0], sample.value.points_m[1])))
+    return list(dict.fromkeys(goal for _, goal in sorted(goals, key=lambda timed: timed[0])))
 
 
 def _is_goal(command: Posted) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from pluto_bt.record.entries import Link, Situation
 
-NO_TROUBLE = ("stopped", "stuck")
+NO_TROUBLE = ("stopped", "stuck", "marker-stale")  # the last is a warning: the car drives on
 BEGIN_NS = 1_000_000_000  # who complains while the first readings come, and no longer, has had no trouble
 AGAIN_NS = 3_000_000_000  # the same complaint so soon again is the same trouble: what tries again every second goes quiet meanwhile
 

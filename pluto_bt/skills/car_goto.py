@@ -24,12 +24,13 @@ REACHED, HINDERED, OUTSIDE_MAP = "reached", "hindered", "outside-map"
 
 
 class CarState(NamedTuple):
-    """What the skill sees: the car frame, and the wheels' speed (unsigned)."""
+    """What the skill sees: the car frame; the wheels' speed (unsigned, NaN = not known); whether the chain lets the car drive."""
 
     x_m: float
     y_m: float
     heading_deg: float
     speed_mps: float
+    is_driven: bool = True
 
 
 class CarOrder(NamedTuple):
@@ -82,13 +83,13 @@ class CarGoto:
 
     def _hindered(self, car: CarState) -> CarOrder | None:
         """Ten rounds are over and the speed is 0 now; or it has been 0 for 3 s of driving."""
-        if car.speed_mps > 0.0:
+        if car.speed_mps != 0.0 or not car.is_driven:  # who is held back by his own software is not hindered by an obstacle
             self._steps_at_rest = 0
             return None
         self._steps_at_rest += 1
         rounds_over = self.rounds - 1
         if rounds_over >= HINDERED_ROUNDS and self._turn_steps == 0:
-            return CarOrder(ended=HINDERED, text=f"the wheels stand still after {rounds_over} rounds")
+            return CarOrder(ended=HINDERED, text=f"told to drive and the wheels stand still, {rounds_over} rounds after the start")
         if self._steps_at_rest > round(HINDERED_S / STEP_S):
             return CarOrder(ended=HINDERED, text=f"told to drive for {HINDERED_S:g} s and the wheels stand still")
         return None

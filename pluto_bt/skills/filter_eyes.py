@@ -24,7 +24,8 @@ class FilterSenses(NamedTuple):
     """The newest readings; None = there is none. `pose` is dead reckoning, `pose_map` interface 3, each with its stamp.
 
     `laser`, `tilt_rad` and `lacks` are those of `ScanView`: where `scan` was taken from, in the frame of dead reckoning;
-    `sonar_at`: where the robot was when `sonar` listened; `executive_age_s`: seconds since the executive's last step.
+    `sonar_at`: where the robot was when `sonar` listened; `executive_age_s`: seconds since the executive's last step;
+    `doubt`: what localisation says against its own pose, because a sensor is silent.
     """
 
     raw: ActuatorState | None
@@ -38,6 +39,7 @@ class FilterSenses(NamedTuple):
     sonar_at: Planar | None = None
     bumper: BumperState | None = None
     executive_age_s: float = 0.0
+    doubt: Verdict = ALL_WELL
 
 
 class FilterEyes:

@@ -37,4 +37,7 @@ class FilterParameters(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown
     retry_s: Annotated[Positive, Meta(description="after so long at rest the wheels may try again")] = 1.0
     command_stale_s: Annotated[Positive, Meta(description="without a command for so long the velocity is zero")] = 0.22
     executive_silent_s: Annotated[Positive, Meta(description="without a step of the executive for so long the velocity is zero")] = 0.23
+    area_margin_m: Annotated[
+        NotNegative, Meta(description="who has no range sensors keeps his middle so far from the edge of the mapped area; 0: it may be cut on an arc")
+    ] = 0.0
     period_s: Annotated[Positive, Meta(description="time between two steps, part of the reaction time that is reckoned with")] = 0.05

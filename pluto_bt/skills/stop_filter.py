@@ -16,9 +16,10 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons, stop_path
 from pluto_bt.skills.filter_eyes import FilterEyes, FilterSenses
 from pluto_bt.skills.filter_parameters import FilterParameters
+from pluto_bt.skills.hindrance import Hindrance
 from pluto_bt.skills.limits import STILL, Twist, limits_of, ramp
 from pluto_bt.skills.map_area import MapArea
-from pluto_bt.skills.map_hold import held_by_area
+from pluto_bt.skills.map_hold import Braking, held_at_edge, held_by_area
 from pluto_bt.skills.outline import Array, Planar, outline_of
 from pluto_bt.skills.seen_kernels import CELL_M, LEVEL
 from pluto_bt.skills.sonar import sonar_code, where_word
@@ -40,18 +41,20 @@ class StopFilter:
     def __init__(self, platform: Platform, parameters: FilterParameters, area: MapArea) -> None:
         self.parameters = p = parameters
         self.limits = limits_of(platform)
-        self._platform, self._area = platform, area
+        self._platform, self._area = platform, area.shrunk(p.area_margin_m)
         self._outline = outline_of(platform.body.outline_m)
         self._rim = rim_of(self._outline, platform.body.outline_m)
         devices, motors = platform.devices, platform.limits
         self._lag_s = motors.motor_latency_s + motors.motor_time_constant_s
         self._hold_s = p.period_s + self._lag_s + 0.05  # odometry and scheduling take their time too
+        self._braking = Braking(self._hold_s, BRAKING_SHARE * self.limits.deceleration_mps2)
         self._has_bumpers = devices.bumpers is not None
         self._least_m = (devices.bumpers.depth_m if devices.bumpers else 0.0) + TOUCH_M  # nearer the bumpers would feel it
         has_eyes = devices.laser is not None or devices.sonar is not None
         self.eyes = FilterEyes(platform, p, self._outline, self._window_m(self.limits.speed_mps)) if has_eyes else None
         self._wheels = WheelWatch(self.limits, p.wheels_still_s, p.retry_s) if platform.body.kinematics != "ackermann" else None
         self._first_trouble = first_trouble.compiled()
+        self._hindrance = Hindrance() if self._wheels is None else None
         limits = self.limits
         self._robot: Array = np.array([
             0.0, 0.0, limits.acceleration_mps2, BRAKING_SHARE * limits.deceleration_mps2, BRAKING_SHARE * limits.turn_acceleration_radps2,
@@ -63,6 +66,9 @@ class StopFilter:
     def step(self, wanted: Twist, now_s: float, senses: FilterSenses) -> Twist:
         """The twist that may go to the base now."""
         out, verdict = self._passed(wanted, now_s, senses)
+        if self._hindrance is not None and senses.raw is not None:
+            hindered = self._hindrance.step(self.out[0], senses.raw.position[0], now_s)
+            verdict = hindered if verdict == ALL_WELL else verdict
         is_same = verdict[:2] == self.verdict[:2] and (out == STILL) == (self.out == STILL)
         self.verdict = self.verdict if is_same else verdict  # a text is written once when a state begins, not anew with each figure
         self.out = out
@@ -91,13 +97,9 @@ class StopFilter:
         if self.eyes is not None:
             self.eyes.forget()
 
-    def _stop_m(self, speed_mps: float) -> float:
-        """The way from a decision to standstill."""
-        return abs(speed_mps) * self._hold_s + speed_mps * speed_mps / (2.0 * BRAKING_SHARE * self.limits.deceleration_mps2)
-
     def _window_m(self, speed_mps: float) -> float:
         """How far from the robot's centre things matter at a speed."""
-        return self._outline.reach_m + self._stop_m(speed_mps) + stop_path.MOST_MARGIN_M + 2 * CELL_M
+        return self._outline.reach_m + self._braking.way_m(speed_mps) + stop_path.MOST_MARGIN_M + 2 * CELL_M
 
     # ---------------------------------------------------------------- deciding
 
@@ -114,7 +116,7 @@ class StopFilter:
         held, verdict = self._bumped(wanted, senses.bumper)
         if self.eyes is None:
             place = senses.pose_map  # fresh, or `_trouble` had spoken, where there is an area to leave
-            return (held, verdict) if place is None else held_by_area(self._area, held, place[1], self._stop_m(held[0]), verdict)
+            return (held, verdict) if place is None else self._in_area(held, place[1], verdict)
         if not self.eyes.hears(now_s):
             deaf = Verdict(LinkStatus.SONAR_FRONT, reasons.SONAR_STALE, f"no usable echoes younger than {p.sonar_stale_s:g} s")
             held, verdict = self._slowed(held, p.without_sonar_mps, deaf, verdict)
@@ -145,10 +147,18 @@ class StopFilter:
             pose, whose = senses.pose, "dead reckoning"
         elif self._area.is_everything:
             return None
+        elif senses.doubt != ALL_WELL:
+            return senses.doubt
         else:
             pose, whose = senses.pose_map, "localisation"
         is_known = pose is not None and now_s - pose[0] <= stale_s
         return None if is_known else Verdict(LinkStatus.NORMAL, reasons.NO_POSE, f"{whose} has given no pose for {stale_s:g} s")
+
+    def _in_area(self, twist: Twist, robot: Planar, verdict: Verdict) -> tuple[Twist, Verdict]:
+        """What the mapped area lets through: as for a point, or so that the robot keeps from its edge."""
+        if self.parameters.area_margin_m == 0.0:
+            return held_by_area(self._area, twist, robot, self._braking.way_m(twist[0]), verdict)
+        return held_at_edge(self._area, twist, robot, self._braking, verdict)
 
     def _bumped(self, twist: Twist, bumper: BumperState | None) -> tuple[Twist, Verdict]:
         """A pressed panel: no motion towards it, and no rotation."""

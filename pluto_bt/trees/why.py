@@ -92,8 +92,8 @@ class Answer:
 
 def explain(view: View) -> Answer:
     """The chain of causes at this moment."""
-    upward = [*_links(view), *_nodes(view), *_mission(view)]
     first = _first(view)
+    upward = [*_links(view), *_nodes(view), *_mission(view), *_beside(view)]
     if first is not None:
         upward = [cause for cause in upward if (cause.layer, cause.code) != (first.layer, first.code)]
     return Answer(view.trail.situation.moves, [first, *upward] if first is not None else upward)
@@ -213,6 +213,13 @@ def _plain_end(view: View) -> Cause | None:
 
 
 # -------------------------------------------------------------------- the way up
+
+
+def _beside(view: View) -> Iterator[Cause]:
+    """What hinders nobody and should be known all the same: it is told last."""
+    link = view.trail.situation.links.get(LOCALISATION)
+    if link is not None and link.reason == reasons.MARKER_STALE:
+        yield _cause(LOCALISATION, link.reason, link.text, _since(view, f"link/{LOCALISATION}"))
 
 
 def _links(view: View) -> Iterator[Cause]:

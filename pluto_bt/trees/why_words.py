@@ -19,14 +19,14 @@ OF_SENSOR: Final = {  # word -> (what it speaks of, its topic)
     reasons.ODOMETRY_STALE: ("odometry", ODOMETRY), reasons.ODOMETRY_FROZEN: ("wheels", ODOMETRY),
     reasons.NO_POSE: ("localisation", "Localization/Pose"), reasons.LOST: ("localisation", "Localization/Pose"),
     reasons.WALKER: ("people", ""), reasons.NO_WALL: ("laser", "sick/scan"), reasons.WALL_LOST: ("laser", "sick/scan"),
-    WHEEL_SLIP: ("wheels", ""),
-    "tilted": ("orientation", "imu/alarms"), "hindered": ("wheels", "car/speed"),
+    WHEEL_SLIP: ("wheels", ""), reasons.GYRO_STALE: ("gyro", "dmu/state"), reasons.SPEED_STALE: ("wheel speed", "car/speed"),
+    "tilted": ("orientation", "imu/alarms"), reasons.HINDERED: ("wheels", "car/speed"),
     reasons.OUTSIDE_MAP: ("map", ""), reasons.UNSEEN: ("filter", ""),
 }  # fmt: skip
 WRITERS: Final = {topic.name: topic.writer for topic in TOPICS}
 BROKEN: Final = (  # devices
     reasons.LASER_FATAL, reasons.LASER_STALE, reasons.WRIST_STALE, reasons.SONAR_STALE, reasons.ODOMETRY_STALE, reasons.ODOMETRY_FROZEN,
-    reasons.BUMPER, reasons.BUMPER_STALE,
+    reasons.BUMPER, reasons.BUMPER_STALE, reasons.GYRO_STALE, reasons.SPEED_STALE,
 )  # fmt: skip
 OF_THE_BASE: Final = (reasons.ODOMETRY_STALE, reasons.NO_POSE, reasons.SONAR_STALE, reasons.BUMPER_STALE, "base-lost")  # while odometry is stale
 OF_CODE: Final[dict[int | None, str]] = {
@@ -49,7 +49,7 @@ def rank(word: str) -> int:
     """Broken devices before wheels that stand, those before obstacles, and all before words that only say how it ended."""
     if word in BROKEN:
         return 0
-    if word in (reasons.NO_POSE, reasons.LOST, WHEEL_SLIP, "tilted", "hindered", reasons.OUTSIDE_MAP):
+    if word in (reasons.NO_POSE, reasons.LOST, WHEEL_SLIP, "tilted", reasons.HINDERED, reasons.OUTSIDE_MAP):
         return 1
     return 2 if word in OF_SENSOR else 3
 

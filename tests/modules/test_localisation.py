@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import msgspec
 import pytest
 
 from drivers.records import MarkerRecord
@@ -273,3 +274,83 @@ def test_a_far_marker_moves_the_pose_only_when_the_next_one_confirms_it(make_rig
     assert places[6.0] == pytest.approx((0.52, 12.01))
     assert places[7.0] == pytest.approx((0.52, 12.01))  # far from the estimate, for the first time
     assert places[8.0] == pytest.approx((1.41, 12.0))  # confirmed
+
+
+class Camera:
+    """A car that drives along x with 0.5 m/s below markers; each reading is given as (marker, error x m, y m, heading deg)."""
+
+    def __init__(self, make_rig: Any) -> None:
+        self.rig = make_rig((0.0, 0.0, 0.0), kinematics="ackermann", dmu=Inertial(), speed=WheelSpeed(), marker=MarkerCamera())
+        self._local, self._marker = Local(self.rig.context), Marker(self.rig.context)
+        self._local.start(0.0)
+        self.rig.put("ATRV2/Drive/Command", ActuatorState(0.0, 0, velocity=(0.5, 0.0)))
+        self.k, self.repeats = 0, False
+
+    def sees(self, *readings: tuple[int, float, float, float]) -> list[tuple[str, bool]]:
+        """A reading each 0.34 s: (refused, is the car elsewhere) after each."""
+        verdicts = []
+        for marker, x, y, heading_deg in readings:
+            for _ in range(17):
+                self.k += 1
+                now_s = self.k * DT_S
+                self.rig.put("car/speed", SpeedState(now_s, 0.5), now_s)
+                self.rig.put("dmu/state", ImuState(now_s, 0.0, bias_known=True), now_s)
+                self._local.step(now_s)
+            seen = MarkerRecord(now_s, now_s, marker, self.x_m + x, y, math.radians(heading_deg), 0.5)
+            self._last = msgspec.structs.replace(self._last, stamp_s=now_s, arrival_s=now_s) if self.repeats else seen
+            self.rig.devices["marker"].records = [self._last]
+            self._marker.step(now_s)
+            state = self.rig.newest("car/marker")
+            verdicts.append((state.refused, state.is_elsewhere))
+        return verdicts
+
+    @property
+    def x_m(self) -> float:
+        """Where it is in truth, but for the first step."""
+        return 0.5 * DT_S * (self.k - 1)
+
+    @property
+    def off(self) -> tuple[float, float]:
+        """How far the estimate is off, m and degrees."""
+        self._local.step((self.k + 0.5) * DT_S)
+        x, y, theta = planar(self.rig.newest(POSE))
+        return math.hypot(x - self.x_m, y), math.degrees(theta)
+
+
+NEAR = (0.0, 0.0, 0.0)
+
+
+def test_a_marker_that_hangs_elsewhere_moves_nothing_and_is_passed(make_rig: Any) -> None:
+    camera = Camera(make_rig)
+    camera.sees(*[(1, *NEAR)] * 3)
+    verdicts = camera.sees(*[(2, 1.2, 0.6, 0.0)] * 8)
+    assert verdicts[-1] == ("", False), "the gate lets it pass in the end"
+    assert camera.off[0] < 0.05
+    camera.sees(*[(3, *NEAR)] * 8)
+    assert camera.off[0] < 0.05
+
+
+def test_a_marker_that_hangs_turned_turns_nothing(make_rig: Any) -> None:
+    camera = Camera(make_rig)
+    camera.sees(*[(1, *NEAR)] * 3)
+    assert camera.sees(*[(2, 0.1, 0.0, 170.0)] * 8) == [("bad-heading", False)] * 8
+    assert abs(camera.off[1]) < 0.5
+
+
+@pytest.mark.parametrize("markers", [(1, 1, 1), (2, 3, 3), (2, 2, 1)])  # one that agreed before, two, an unknown one and one that agreed before
+def test_a_car_that_was_turned_stands_and_believes_the_third_reading(make_rig: Any, markers: tuple[int, ...]) -> None:
+    camera = Camera(make_rig)
+    camera.sees(*[(1, *NEAR)] * 3)
+    verdicts = camera.sees(*((marker, 0.0, 0.0, 120.0) for marker in markers))
+    assert verdicts[-1] == ("", False)
+    assert ("bad-heading", True) in verdicts or markers == (2, 2, 1)
+    assert camera.off[1] == pytest.approx(120.0, abs=1.0)
+    assert any(event[1] == "pose-jump" for event in camera.rig.events)
+
+
+def test_a_camera_that_repeats_itself_to_the_last_digit_holds_nobody_back(make_rig: Any) -> None:
+    camera = Camera(make_rig)
+    camera.sees(*[(1, *NEAR)] * 3)
+    camera.repeats = True
+    assert camera.sees(*[(1, *NEAR)] * 9) == [("repeated", False)] * 9
+    assert camera.off[0] < 0.05

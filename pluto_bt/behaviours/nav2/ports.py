@@ -8,6 +8,7 @@ from py_trees.common import Status
 
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.ports import Port
+from pluto_bt.skills.reasons import PLACELESS
 
 _IGNORED: Final = "of Nav2; means nothing here"
 SERVER: Final = {
@@ -28,14 +29,14 @@ def ignored(name: str) -> dict[str, Port]:
 
 
 class ActionLeaf(Leaf):
-    """A leaf that gives Nav2's error number: `NUMBERS` by reason (`lost` is a `no-pose` to Nav2), `UNKNOWN` for all others."""
+    """A leaf that gives Nav2's error number: `NUMBERS` by reason (`lost` and silent sensors are a `no-pose` to Nav2), `UNKNOWN` for all others."""
 
     UNKNOWN: ClassVar[int] = 0
     NUMBERS: ClassVar[dict[str, int]] = {}
 
     def fail(self, reason: str, text: str) -> Status:
         """FAILURE, with the number."""
-        return self.fail_with(self.NUMBERS.get("no-pose" if reason == "lost" else reason, self.UNKNOWN), reason, text)
+        return self.fail_with(self.NUMBERS.get("no-pose" if reason in PLACELESS else reason, self.UNKNOWN), reason, text)
 
     def fail_with(self, number: int, reason: str, text: str) -> Status:
         """FAILURE with a number that the reason alone does not tell."""
