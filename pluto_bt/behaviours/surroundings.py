@@ -26,6 +26,7 @@ from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.walked_ground import WalkedGround
 from pluto_bt.skills.ways import Way, Ways
 
+RARELY_S = 1.0  # so often the coarse map takes a level scan while nobody asks it
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
 FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
 FEET_S, AGAIN_S = 6.0, 0.4  # where somebody walked so lately a low thing has to be seen twice: who walks has gone on by then
@@ -48,6 +49,7 @@ class Surroundings:
         self._front_m = outline_of(platform.body.outline_m).front_m
         self._has_run_into = False
         self._is_empty = True
+        self._coarse_s = -math.inf  # stamp of the last level scan in the coarse map
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
         self._passers_by, self._walked = PassersBy(), WalkedGround(self.map.look_m)
@@ -109,7 +111,7 @@ class Surroundings:
         """Take what the robot has seen since the last look. False if it is not known where it is.
 
         Args:
-            only_finely: True if nobody will ask the coarse map for clearances, which are dear.
+            only_finely: True if nobody asks the coarse map: it is kept for the jobs that may follow, but not as often.
         """
         self._watch_passers_by(robot, now_s)
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
@@ -133,13 +135,21 @@ class Surroundings:
         for view in self.views:
             if view.laser is not None and self._laser is not None:
                 has_feet = abs(view.tilt_rad) >= LEVEL_RAD and len(self._walked.places(view.scan.stamp_s, FEET_S)) > 0
-                for grid in self._grids():
+                for grid in self._grids_for(view, only_finely):
                     grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, AGAIN_S if has_feet else 0.0)
                 self._note_walkers(view.scan, view.laser, view.tilt_rad)
         for grid in self._grids():
             if now_s - grid.refreshed_s >= REFRESH_S and not (only_finely and grid is self.map):
                 grid.refresh(now_s)
         return True
+
+    def _grids_for(self, view: ScanView, only_finely: bool) -> tuple[LocalMap, ...]:
+        """Those that a scan is entered into. One that looks down finds what no later one may find again: it goes into all."""
+        is_level = abs(view.tilt_rad) < LEVEL_RAD
+        if only_finely and self.fine is not None and is_level and 0.0 <= view.scan.stamp_s - self._coarse_s < RARELY_S:
+            return (self.fine,)
+        self._coarse_s = view.scan.stamp_s if is_level else self._coarse_s
+        return self._grids()
 
     def _note_walkers(self, scan: LaserScan, laser: Planar, tilt_rad: float) -> None:
         """Who walks is found by level scans; what the others find of him are his feet."""
