@@ -16,7 +16,8 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import walked_ground
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
-from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
+from pluto_bt.skills.local_grid import CELLS
+from pluto_bt.skills.local_map import CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.passers_by import PassersBy
@@ -32,6 +33,7 @@ FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthe
 FEET_S, AGAIN_S = 6.0, 0.4  # where somebody walked so lately a low thing has to be seen twice: who walks has gone on by then
 SHUT_AHEAD_M, SHUT_M = 0.3, 0.5  # so far before its front, and so much around there, is shut where the robot could not go on
 MOST_DOUBT_M = 0.6  # with more doubt the ground along the edges would be given up
+MOST_TRIES = 4  # so often in a job what was shut is tried again
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
 
@@ -63,7 +65,7 @@ class Surroundings:
             self._first_variance_m2, self._doubt_m = math.inf, 0.0
         self.rectangle = rectangle
         self.blocked = 0
-        self._has_reopened = False
+        self._reopened = 0
         self.headway = Headway()
         self.way: Way | None = None
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
@@ -218,10 +220,10 @@ class Surroundings:
 
     def find_once_more(self, goal: Pair | None) -> Way | None:
         """The same where there was none, and where the robot could not go on is open again: from elsewhere, or another time, it may come through.
-        New ground is worth one such try."""
-        if (goal is None and self._has_reopened) or not self.map.reopen():
+        New ground is worth one such try in a job, a goal some."""
+        if self._reopened >= (MOST_TRIES if goal is not None else 1) or not self.map.reopen(self.map.refreshed_s):
             return None
-        self._has_reopened = True
+        self._reopened += 1
         self.map.refresh(self.map.refreshed_s)
         return self.find(goal)
 

@@ -101,16 +101,16 @@ def cells_along(places: Counts, x: float, y: float, c: float, s: float, size: in
 def mark_ground(
     low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float,
     height: float, look: float, step: float, now_s: float, again_s: float,
-) -> None:  # fmt: skip
+) -> bool:  # fmt: skip
     """Enter what a scan tilted down by `tilt` says of the ground into `low_s`: metres, (x, y) in cells.
 
     Ends more than `step` above the ground are low obstacles, once they are seen again `again_s` later (`first_s` = when first); a beam that runs on
     more than `step` below the ground has found a hole, where it went through the ground; both only where the beam before says the same.
-    Ground that is where it should be takes old marks away.
+    Ground that is where it should be takes old marks away. Returns: whether anything counts as lying low now.
     """
     size = low_s.shape[0]
     sin, cos = math.sin(tilt), math.cos(tilt)
-    before = 0
+    before, found = 0, False
     for k in range(ranges.shape[0]):
         r = ranges[k]
         fall = math.cos(angles[k]) * sin
@@ -133,9 +133,10 @@ def mark_ground(
         if verdict == LEVEL:
             low_s[i, j] = first_s[i, j] = -1.0
         elif verdict == HOLE or again_s <= 0.0 or again_s <= now_s - first_s[i, j] <= FORGOTTEN_S:
-            low_s[i, j] = now_s
+            low_s[i, j], found = now_s, True
         elif evidence[i, j] <= 0 and (first_s[i, j] < 0.0 or now_s - first_s[i, j] > FORGOTTEN_S):
             first_s[i, j] = now_s
+    return found
 
 
 @kernel
