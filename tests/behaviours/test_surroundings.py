@@ -68,7 +68,7 @@ def robot() -> FakeRobot:
 
 def a_scan(stamp_s: float, tilt_rad: float = 0.0) -> ScanView:
     ranges = read_only(np.full(181, 3.0))
-    return ScanView(LaserScan(stamp_s, -math.pi / 2, math.radians(1.0), ranges, 181), (0.0, 0.0, 0.0), tilt_rad, "")
+    return ScanView(LaserScan(stamp_s, -math.pi / 2, math.radians(1.0), ranges, 181), (0.0, 0.0, 0.0), tilt_rad)
 
 
 def test_who_navigates_enters_each_scan_into_the_fine_map_and_one_a_second_into_the_coarse_one(robot: FakeRobot) -> None:
