@@ -94,7 +94,8 @@ class DriveVelocity(RefreshedLeaf):
 
 
 class HoldHeading(RefreshedLeaf):
-    """Turns to a heading of the map (counter-clockwise from x) and holds it at a speed. With a `distance_m` it fails with `stuck` as DriveVelocity does."""
+    """Turns to a heading of the map (counter-clockwise from x) and holds it at a speed. With a `distance_m` it fails with `stuck` as
+    DriveVelocity does."""
 
     INPUT_PORTS = {
         "heading_deg": Port(float, True, "heading in the map, counter-clockwise from x", unit="deg"),
