@@ -9,8 +9,9 @@ import math
 
 import numpy as np
 
+from pluto_bt.skills.grid_kernels import all_free, along_line, under_points
 from pluto_bt.skills.grid_shift import shift
-from pluto_bt.skills.map_kernels import Bytes, Floats, all_free, along_line, under_points
+from pluto_bt.skills.map_kernels import Bytes, Floats
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.walked_ground import Indices, cells_beside
 from pluto_bt.skills.window import Cell
