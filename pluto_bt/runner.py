@@ -29,7 +29,7 @@ from pluto_bt.modules.topic_globals import TopicGlobals
 from pluto_bt.result import RunResult
 from pluto_bt.resume import ResumeRequest, Resumption, decide
 from pluto_bt.run_options import Options
-from pluto_bt.runtime.clock import NS, MonotonicClock, StepClock, VirtualClock, calendar_ns
+from pluto_bt.runtime.clock import NS, MissionClock, MonotonicClock, StepClock, VirtualClock, calendar_ns
 from pluto_bt.system import System
 from pluto_bt.trees import Mission, load_mission
 from pluto_bt.trees.activity import ABORTED, SUCCEEDED
@@ -163,15 +163,8 @@ def make_runner(
     clock: VirtualClock | MonotonicClock = MonotonicClock(speed) if realtime else VirtualClock()
     own_clock = StepClock() if realtime else None
     topics = TopicGlobals()
-    of_file: dict[str, Any] = {"tree": inputs.tree, "ports": inputs.ports, "file": str(inputs.mission_path)}
-
-    def load(text: str | Path, **more: Any) -> Mission:
-        return load_mission(text, nodes, own_clock or clock, topics=topics, **more)
-
-    def load_to_order(text: str, ports: Mapping[str, str]) -> Mission:
-        return load_checked(text, ports, nodes, own_clock or clock, topics=topics)
-
-    mission = load(inputs.mission_path, **of_file)
+    load, load_to_order = _loaders(nodes, own_clock or clock, topics)
+    mission = load(inputs.mission_path, tree=inputs.tree, ports=inputs.ports, file=str(inputs.mission_path))
     resumption = None if resume is None else decide(resume, inputs, mission, calendar_ns())
     if resumption is not None:
         inputs = replace(inputs, start=resumption.start or inputs.start)
@@ -188,6 +181,18 @@ def make_runner(
     if resumption is not None:
         runner.keep_journal(resumption)
     return runner
+
+
+def _loaders(nodes: Sequence[type], clock: MissionClock, topics: TopicGlobals) -> tuple[Callable[..., Mission], Callable[..., Mission]]:
+    """How the missions of a run are loaded: those that were checked before, and those that somebody orders, which are checked first."""
+
+    def load(text: str | Path, **more: Any) -> Mission:
+        return load_mission(text, nodes, clock, topics=topics, **more)
+
+    def load_to_order(text: str, ports: Mapping[str, str]) -> Mission:
+        return load_checked(text, ports, nodes, clock, topics=topics)
+
+    return load, load_to_order
 
 
 def _leaves(mission: Mission) -> dict[str, str]:

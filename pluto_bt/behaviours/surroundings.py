@@ -16,7 +16,8 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import walked_ground
 from pluto_bt.skills.circling import SeenObject
 from pluto_bt.skills.headway import Headway
-from pluto_bt.skills.local_map import CELLS, CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
+from pluto_bt.skills.local_grid import CELLS
+from pluto_bt.skills.local_map import CELLS_OF_A_PATH, LEVEL_RAD, LocalMap
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Planar, outline_of
 from pluto_bt.skills.passers_by import PassersBy
@@ -26,11 +27,13 @@ from pluto_bt.skills.sight import ScanView
 from pluto_bt.skills.walked_ground import WalkedGround
 from pluto_bt.skills.ways import Way, Ways
 
+RARELY_S = 1.0  # so often the coarse map takes a level scan while nobody asks it
 REFRESH_S = 0.35  # clearances are worked out anew so often: after every second scan
 FINE_ROOM_M, FINE_LOOK_M, FINE_JOIN_M = 2.0, 8.0, 0.3  # of the fine map: farthest clearance, farthest range, gap in one wall
 FEET_S, AGAIN_S = 6.0, 0.4  # where somebody walked so lately a low thing has to be seen twice: who walks has gone on by then
 SHUT_AHEAD_M, SHUT_M = 0.3, 0.5  # so far before its front, and so much around there, is shut where the robot could not go on
 MOST_DOUBT_M = 0.6  # with more doubt the ground along the edges would be given up
+MOST_TRIES = 4  # so often in a job what was shut is tried again
 MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map shows
 
 
@@ -48,6 +51,7 @@ class Surroundings:
         self._front_m = outline_of(platform.body.outline_m).front_m
         self._has_run_into = False
         self._is_empty = True
+        self._coarse_s = -math.inf  # stamp of the last level scan in the coarse map
         self.robot: Planar = (0.0, 0.0, 0.0)
         self.believed: Planar = (0.0, 0.0, 0.0)
         self._passers_by, self._walked = PassersBy(), WalkedGround(self.map.look_m)
@@ -61,7 +65,7 @@ class Surroundings:
             self._first_variance_m2, self._doubt_m = math.inf, 0.0
         self.rectangle = rectangle
         self.blocked = 0
-        self._has_reopened = False
+        self._reopened = 0
         self.headway = Headway()
         self.way: Way | None = None
         self.views: tuple[ScanView, ...] = ()  # the scans of the last look
@@ -109,7 +113,7 @@ class Surroundings:
         """Take what the robot has seen since the last look. False if it is not known where it is.
 
         Args:
-            only_finely: True if nobody will ask the coarse map for clearances, which are dear.
+            only_finely: True if nobody asks the coarse map: it is kept for the jobs that may follow, but not as often.
         """
         self._watch_passers_by(robot, now_s)
         dead, believed = robot.newest("Localization/Dead-Reckoning"), robot.newest("Localization/Pose")
@@ -133,13 +137,21 @@ class Surroundings:
         for view in self.views:
             if view.laser is not None and self._laser is not None:
                 has_feet = abs(view.tilt_rad) >= LEVEL_RAD and len(self._walked.places(view.scan.stamp_s, FEET_S)) > 0
-                for grid in self._grids():
+                for grid in self._grids_for(view, only_finely):
                     grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, AGAIN_S if has_feet else 0.0)
                 self._note_walkers(view.scan, view.laser, view.tilt_rad)
         for grid in self._grids():
             if now_s - grid.refreshed_s >= REFRESH_S and not (only_finely and grid is self.map):
                 grid.refresh(now_s)
         return True
+
+    def _grids_for(self, view: ScanView, only_finely: bool) -> tuple[LocalMap, ...]:
+        """Those that a scan is entered into. One that looks down finds what no later one may find again: it goes into all."""
+        is_level = abs(view.tilt_rad) < LEVEL_RAD
+        if only_finely and self.fine is not None and is_level and 0.0 <= view.scan.stamp_s - self._coarse_s < RARELY_S:
+            return (self.fine,)
+        self._coarse_s = view.scan.stamp_s if is_level else self._coarse_s
+        return self._grids()
 
     def _note_walkers(self, scan: LaserScan, laser: Planar, tilt_rad: float) -> None:
         """Who walks is found by level scans; what the others find of him are his feet."""
@@ -208,10 +220,10 @@ class Surroundings:
 
     def find_once_more(self, goal: Pair | None) -> Way | None:
         """The same where there was none, and where the robot could not go on is open again: from elsewhere, or another time, it may come through.
-        New ground is worth one such try."""
-        if (goal is None and self._has_reopened) or not self.map.reopen():
+        New ground is worth one such try in a job, a goal some."""
+        if self._reopened >= (MOST_TRIES if goal is not None else 1) or not self.map.reopen(self.map.refreshed_s):
             return None
-        self._has_reopened = True
+        self._reopened += 1
         self.map.refresh(self.map.refreshed_s)
         return self.find(goal)
 

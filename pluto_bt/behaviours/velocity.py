@@ -72,7 +72,8 @@ ENDS: Final = {
 
 
 class DriveVelocity(RefreshedLeaf):
-    """Drives with a speed (backwards negative) and a turn rate (counter-clockwise positive)."""
+    """Drives with a speed (backwards negative) and a turn rate (counter-clockwise positive). With a `distance_m` it fails with `stuck` where
+    the robot comes nowhere for 8 s although nothing holds it; without one it drives on."""
 
     INPUT_PORTS = {
         "speed_mps": Port(float, False, "forward speed, negative backwards", 0.0, unit="m/s"),
@@ -93,7 +94,8 @@ class DriveVelocity(RefreshedLeaf):
 
 
 class HoldHeading(RefreshedLeaf):
-    """Turns to a heading of the map (counter-clockwise from x) and holds it at a speed."""
+    """Turns to a heading of the map (counter-clockwise from x) and holds it at a speed. With a `distance_m` it fails with `stuck` as
+    DriveVelocity does."""
 
     INPUT_PORTS = {
         "heading_deg": Port(float, True, "heading in the map, counter-clockwise from x", unit="deg"),

@@ -15,6 +15,7 @@ from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.limits import STILL, Twist
 from pluto_bt.skills.map_area import MapArea
 from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.scan_watch import Lack
 from pluto_bt.skills.stop_filter import FilterSenses, StopFilter
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -36,7 +37,7 @@ class Filter:
         self._scan_topic, self._sonar_topic = newest(context, "sick/scan"), newest(context, "ATRV2/Sonar")
         self._check, self._was_lost, self._doubt = newest(context, "Localization/Check"), False, ALL_WELL
         self._scan: LaserScan | None = None
-        self._laser: tuple[Planar | None, float, str] = (None, 0.0, "")
+        self._laser: tuple[Planar | None, float, Lack] = (None, 0.0, Lack.NOTHING)
         self._sonar: SonarState | None = None
         self._sonar_at: Planar | None = None
         self._wanted: Twist = STILL

@@ -9,6 +9,7 @@ from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Platform
 from pluto_bt.modules.wrist_angles import wrist_at
 from pluto_bt.skills.outline import Planar
+from pluto_bt.skills.scan_watch import Lack
 from pluto_bt.skills.sight import ScanView
 
 
@@ -24,10 +25,10 @@ class LaserMount:
     def view(self, scan: LaserScan, robot: Planar | None) -> ScanView:
         """The scan as taken by a laser on a robot that stood at `robot` (None: nobody knows)."""
         if robot is None:
-            return ScanView(scan, None, lacks="odometry")
+            return ScanView(scan, None, lacks=Lack.ODOMETRY)
         angles = wrist_at(self._board, scan.stamp_s) if self._has_wrist else (0.0, 0.0)
         if angles is None:
-            return ScanView(scan, None, lacks="wrist")
+            return ScanView(scan, None, lacks=Lack.WRIST)
         pan_rad, tilt_rad = angles
         c, s = math.cos(robot[2]), math.sin(robot[2])
         x_m, y_m = robot[0] + c * self._x_m - s * self._y_m, robot[1] + s * self._x_m + c * self._y_m

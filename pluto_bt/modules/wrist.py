@@ -9,6 +9,7 @@ from drivers.records import WristRecord
 from pluto_bt.blackboard.messages import ActuatorState, Pair
 from pluto_bt.maps.platform import Wrist as WristLimits
 from pluto_bt.modules.context import Context, Device
+from pluto_bt.modules.refusal import Refusal
 from pluto_bt.modules.relay import Relay
 
 
@@ -23,9 +24,13 @@ def _state(record: WristRecord) -> ActuatorState:
     return ActuatorState(record.stamp_s, 0, (record.pan_rad, record.tilt_rad), (record.pan_rate_radps, record.tilt_rate_radps))
 
 
+def _numbers(command: ActuatorState) -> str:
+    return f"{command.position}, {command.velocity}, {command.acceleration}"
+
+
 class Wrist(Relay[WristRecord]):
     """`wrist/state` from the unit; commands to it, held within the limits of the platform. An axis moves only if its
-    velocity and its acceleration are both above 0. A stop holds it where it is."""
+    velocity and its acceleration are both above 0. A stop holds it where it is. What makes no sense moves nothing, and that is said."""
 
     def __init__(self, context: Context) -> None:
         super().__init__(context, "wrist", "wrist/state", WristRecord, lambda r: r.pan_rad + r.tilt_rad, _state)
@@ -35,6 +40,7 @@ class Wrist(Relay[WristRecord]):
         self._reader = context.board.reader("wrist/state")
         self._limits = context.platform.devices.wrist or WristLimits()
         self._target: Pair = (0.0, 0.0)
+        self._refusal = Refusal(context, "wrist")
 
     def step(self, now_s: float) -> None:
         """Command first, then what the unit says."""
@@ -51,7 +57,9 @@ class Wrist(Relay[WristRecord]):
 
     def _move(self, command: ActuatorState, now_s: float) -> None:
         axes = [i for i in (0, 1) if command.velocity[i] > 0.0 and command.acceleration[i] > 0.0]
-        if not axes or not all(math.isfinite(command.position[i]) for i in axes):
+        is_sense = not any(map(math.isnan, (*command.velocity, *command.acceleration))) and all(math.isfinite(command.position[i]) for i in axes)
+        self._refusal.judge("" if is_sense else f"the wrist takes finite angles, rates and accelerations, not {_numbers(command)}")
+        if not axes or not is_sense:
             return
         limits = (math.radians(self._limits.pan_limit_deg), math.radians(self._limits.tilt_limit_deg))
         pan, tilt = (max(-limits[i], min(limits[i], command.position[i])) if i in axes else self._target[i] for i in (0, 1))

@@ -12,7 +12,7 @@ from pluto_bt.maps.platform import Laser, Platform, Sonar
 from pluto_bt.skills.approach import Approach
 from pluto_bt.skills.filter_parameters import FilterParameters
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.scan_watch import ScanWatch
+from pluto_bt.skills.scan_watch import Lack, ScanWatch
 from pluto_bt.skills.seen_kernels import CAME
 from pluto_bt.skills.seen_space import BEHIND_M, SeenSpace
 from pluto_bt.skills.sonar import SonarRing
@@ -34,7 +34,7 @@ class FilterSenses(NamedTuple):
     scan: LaserScan | None = None
     laser: Planar | None = None
     tilt_rad: float = 0.0
-    lacks: str = ""
+    lacks: Lack = Lack.NOTHING
     sonar: SonarState | None = None
     sonar_at: Planar | None = None
     bumper: BumperState | None = None

@@ -7,33 +7,41 @@ things that a level scan passes over. Both are remembered, the second for `groun
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.skills.fan import Fan
-from pluto_bt.skills.grid_shift import shift
-from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
+from pluto_bt.skills.local_grid import CELLS, NEVER_S, LocalGrid
+from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, changes, clearances, mark_ground, mark_level
 from pluto_bt.skills.motion_parameters import MotionParameters
 from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.walked_ground import BODY_M, Indices, cells_beside
+from pluto_bt.skills.walked_ground import BODY_M, Indices
 from pluto_bt.skills.window import Cell, Window
 
-CELLS = 640  # of one side
 CELLS_OF_A_PATH = 6.0  # in half the width of a path
 LEVEL_RAD = math.radians(0.5)
-NEVER_S = -1.0
 HERE_M = 1.0  # so near to where the robot has been nothing needs a visit, though its laser has not looked there
 
 
-class LocalMap:
-    """The grid. `clearance` (cells) is kept up to date by `refresh`; `low_s` is when something low was seen, `NEVER_S` = never."""
+class _Shut(NamedTuple):
+    """A disc in which the robot could not go on."""
+
+    x_m: float
+    y_m: float
+    radius_m: float
+    stamp_s: float
+
+
+class LocalMap(LocalGrid):
+    """The grid with what enters it and leaves it. `clearance` is kept up to date by `refresh`."""
 
     def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0)) -> None:
         self.parameters = parameters
-        self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
-        self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
-        self.far_cells = parameters.wide_half_width_m / self.cell_m
+        cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
+        super().__init__(cell_m, parameters.wide_half_width_m / cell_m)
+        self.look_m = min(parameters.look_m, 0.35 * CELLS * cell_m)
         n = math.ceil(HERE_M / self.cell_m)
         self._here: Bytes = (np.hypot(*np.mgrid[-n : n + 1, -n : n + 1]) <= HERE_M / self.cell_m).astype(np.int8)
         self._fan = Fan()
@@ -41,68 +49,14 @@ class LocalMap:
 
     def forget(self, middle: Planar) -> None:
         """Nothing is known; the middle of the grid is here."""
-        self.evidence: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
-        self.covered: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
+        self.blank()
+        self.lay(middle)
         self._visited: Cell | None = None  # the robot is here, and that is marked
-        self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
-        self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
-        self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
-        self._touched: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
-        self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
-        self._shut: list[tuple[float, float, float, float]] = []  # x m, y m, radius m, when
+        self._shut: list[_Shut] = []
         self.refreshed_s = -math.inf  # when `clearance` was brought up to date; long ago if that is due at once
         self._window: Window | None = None  # where something changed since then
-        self._has_low = False  # something was found to lie low, which is forgotten by itself wherever it is
-        self.lay(middle)
-
-    def lay(self, middle: Planar) -> None:
-        """Put the middle of a grid in which nothing is known here."""
-        self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
-
-    # ------------------------------------------------------------------ places
-
-    def place(self, x_m: float, y_m: float) -> tuple[float, float]:
-        """Where a point lies, in cells."""
-        return x_m / self.cell_m - self.i0, y_m / self.cell_m - self.j0
-
-    def cell(self, x_m: float, y_m: float) -> Cell:
-        """The cell of a point, the nearest one of the edge for a point outside."""
-        i, j = self.place(x_m, y_m)
-        return Cell(min(max(math.floor(i), 0), CELLS - 1), min(max(math.floor(j), 0), CELLS - 1))
-
-    def middle_m(self, i: float, j: float) -> tuple[float, float]:
-        """The middle of a cell."""
-        return (i + self.i0 + 0.5) * self.cell_m, (j + self.j0 + 0.5) * self.cell_m
-
-    def has_inside(self, x_m: float, y_m: float) -> bool:
-        """True if the grid reaches there."""
-        i, j = self.place(x_m, y_m)
-        return 0.0 <= i < CELLS and 0.0 <= j < CELLS
-
-    def clearance_m(self, x_m: float, y_m: float) -> float:
-        """Distance from a point to the nearest thing that stands, at most `wide_half_width_m`."""
-        return float(self.clearance[self.cell(x_m, y_m)]) * self.cell_m
-
-    def is_seen_free(self, points: Array) -> bool:
-        """Whether the cells of all points (n, 2) were seen free; of points outside the nearest cell of the edge."""
-        return all_free(self.evidence, points, self.cell_m, self.i0, self.j0)
-
-    def clearances_m(self, points: Array) -> Array:
-        """`clearance_m` of points (n, 2)."""
-        return under_points(self.clearance, points, self.cell_m, self.i0, self.j0) * self.cell_m
-
-    def clearances_between_m(self, a: tuple[float, float], b: tuple[float, float]) -> Array:
-        """`clearance_m` at each cell of the straight line from a to b."""
-        count = max(2, math.ceil(math.hypot(b[0] - a[0], b[1] - a[1]) / self.cell_m) + 1)
-        return along_line(self.clearance, *self.place(*a), *self.place(*b), count) * self.cell_m
-
-    def standing(self) -> Array:
-        """The middles (n, 2) in metres of all cells where something stands, as of the last `refresh`."""
-        i, j = np.divmod(np.flatnonzero(self.clearance < 0.5), CELLS)  # ten times as fast as `nonzero` of a grid
-        return np.column_stack((i + self.i0 + 0.5, j + self.j0 + 0.5)) * self.cell_m
-
-    # ------------------------------------------------------------------ seeing
+        self._newest_low_s = NEVER_S  # when something was last found to lie low; that is forgotten by itself wherever it is
 
     def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float, again_s: float = 0.0) -> None:
         """Take a scan.
@@ -123,12 +77,13 @@ class LocalMap:
             p = self.parameters
             touched = mark_level(self.evidence, self.covered, self._touched, self._scans, x, y, angles + laser[2], scan.ranges_m / cell,
                                  self.look_m / cell, p.coverage_m / cell, p.join_m / cell)  # fmt: skip
-            self._changed(Window.around(x, y, self.look_m / cell) if self._has_low else Window(*touched))
+            self._changed(Window.around(x, y, self.look_m / cell) if self.has_low else Window(*touched))
         elif tilt_rad > 0.0:
             reach_m = self.parameters.ground_look_m
-            mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m, reach_m,
-                        self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
-            self._has_low = True
+            found = mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m,
+                                reach_m, self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
+            if found:
+                self._newest_low_s = scan.stamp_s
             self._changed(Window.around(x, y, reach_m / cell))
 
     def uncover(self) -> None:
@@ -158,32 +113,30 @@ class LocalMap:
 
     def shut(self, x_m: float, y_m: float, radius_m: float, now_s: float) -> None:
         """Something is here that no scan shows: the robot could not go on. Remembered as what lies low is."""
-        self.low_s[self._disc(x_m, y_m, radius_m)] = now_s
-        self._shut.append((x_m, y_m, radius_m, now_s))
-        self._has_low = True
+        self.low_s[self.disc(x_m, y_m, radius_m)] = self._newest_low_s = now_s
+        self._shut.append(_Shut(x_m, y_m, radius_m, now_s))
         self.changed_around(x_m, y_m, radius_m)
 
-    def reopen(self) -> bool:
-        """Forget what was shut, but for what has been seen to lie low there since. False if nothing was shut."""
+    def reopen(self, now_s: float) -> bool:
+        """Forget what was shut, but for what has been seen to lie low there since. False if nothing was shut that is still remembered."""
         shut, self._shut = self._shut, []
-        for x_m, y_m, radius_m, shut_s in shut:
-            i, j = self._disc(x_m, y_m, radius_m)
-            is_same = self.low_s[i, j] == np.float32(shut_s)
-            self.low_s[i[is_same], j[is_same]] = NEVER_S
-            self.changed_around(x_m, y_m, radius_m)
-        return bool(shut)
+        was_shut = False
+        for place in shut:
+            cells = self._shut_cells(place)
+            was_shut |= len(cells[0]) > 0 and place.stamp_s > self._oldest_s(now_s)
+            self.low_s[cells] = NEVER_S
+            self.changed_around(place.x_m, place.y_m, place.radius_m)
+        return was_shut
+
+    def _shut_cells(self, place: _Shut) -> tuple[Indices, Indices]:
+        """The cells that nothing but having been shut keeps shut."""
+        i, j = self.disc(place.x_m, place.y_m, place.radius_m)
+        is_same = self.low_s[i, j] == np.float32(place.stamp_s)
+        return i[is_same], j[is_same]
 
     def give_up(self, x_m: float, y_m: float, radius_m: float) -> None:
         """What is here cannot be explored any better: it counts as covered."""
-        self.covered[self._disc(x_m, y_m, radius_m)] = 1
-
-    def _disc(self, x_m: float, y_m: float, radius_m: float) -> tuple[Indices, Indices]:
-        """The cells around a point."""
-        reach = math.ceil(radius_m / self.cell_m)
-        i, j = self.cell(x_m, y_m)
-        a, b = np.mgrid[max(0, i - reach) : min(CELLS, i + reach + 1), max(0, j - reach) : min(CELLS, j + reach + 1)]
-        near = np.hypot(a - i, b - j) <= reach
-        return a[near], b[near]
+        self.covered[self.disc(x_m, y_m, radius_m)] = 1
 
     def erase(self, middle: tuple[float, float], side_m: float, *, inside: bool) -> None:
         """Forget what was seen in a square round a point, or outside of it."""
@@ -197,6 +150,7 @@ class LocalMap:
             else:
                 grid[:] = blank
                 grid[square] = kept
+        self._shut = [place for place in self._shut if len(self._shut_cells(place)[0])]
         self.refreshed_s = -math.inf
         self._changed(Window.around(i, j, side_m / self.cell_m if inside else CELLS))
 
@@ -206,14 +160,16 @@ class LocalMap:
         if self._window is None:
             return
         keep, oldest_s = math.ceil(self.far_cells), self._oldest_s(now_s)
-        window, self._window = self._window.grown(2 * keep if self._has_low else 0, CELLS), None
+        window, self._window = self._window.grown(2 * keep if self.has_low else 0, CELLS), None
+        if self.has_low and self._newest_low_s <= oldest_s:
+            self._newest_low_s, window = NEVER_S, Window(0, CELLS, 0, CELLS)  # all of it is forgotten, wherever it lay
         changed = Window(*changes(self.evidence, self.low_s, oldest_s, self._stands, *window))
         if changed.i0 < changed.i1:  # mostly a few cells, or none
             clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self.clearance, keep, self.far_cells)
 
     def without_walkers(self, places: Array, now_s: float) -> tuple[Bytes, Floats]:
         """Evidence and clearances as if nothing stood at and beside `places` (n, 2), where somebody walked."""
-        at = self._beside(places, BODY_M)
+        at = self.beside(places, BODY_M)
         evidence, low_s, clearance = self.evidence.copy(), self.low_s.copy(), np.full_like(self.clearance, self.far_cells)
         evidence[at], low_s[at] = np.minimum(evidence[at], 0), NEVER_S
         clearances(evidence, low_s, self._oldest_s(now_s), 0, CELLS, 0, CELLS, clearance, math.ceil(self.far_cells), self.far_cells)
@@ -221,11 +177,15 @@ class LocalMap:
 
     def forget_feet(self, places: Array) -> None:
         """What a scan that looks down found at `places` (n, 2), where somebody walks, does not lie there."""
-        at = self._beside(places, self.cell_m)
+        i, j = at = self.beside(places, self.cell_m)
         self.low_s[at] = self._first_s[at] = NEVER_S
+        if len(i):
+            self._changed(Window(int(i.min()), int(i.max()) + 1, int(j.min()), int(j.max()) + 1))
 
-    def _beside(self, places: Array, reach_m: float) -> tuple[Indices, Indices]:
-        return cells_beside(places / self.cell_m - (self.i0, self.j0), math.ceil(reach_m / self.cell_m), CELLS)
+    @property
+    def has_low(self) -> bool:
+        """True while something is remembered to lie low."""
+        return self._newest_low_s > NEVER_S
 
     def _oldest_s(self, now_s: float) -> float:
         """What was seen to lie low before is not known any more."""
@@ -239,16 +199,7 @@ class LocalMap:
         self._window = window.joined(self._window)
 
     def _follow(self, robot: Planar) -> None:
-        """Move the grid along when the robot comes within a quarter of its edge; what falls off is forgotten."""
-        i, j = self.place(robot[0], robot[1])
-        quarter = CELLS // 4
-        shift_i = 0 if quarter <= i < CELLS - quarter else math.floor(i) - CELLS // 2
-        shift_j = 0 if quarter <= j < CELLS - quarter else math.floor(j) - CELLS // 2
-        if not (shift_i or shift_j):
-            return
-        for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
-                            (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
-            shift(grid, shift_i, shift_j, blank)
-        self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
-        self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
-        self._visited = None
+        shift_i, shift_j = self.go_along(robot)
+        if shift_i or shift_j:
+            self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
+            self._visited = None

@@ -24,6 +24,7 @@ MOST_NUMBER = 127  # of a scan, then they begin anew at 1
 LEVEL, STANDS, HOLE = 1, 2, 3  # what a beam that looks down may find
 FORGOTTEN_S = 6.0  # what was seen to lie low before that is not known any more
 TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
+LOW_X, HIGH_X, LOW_Y, HIGH_Y = range(4)  # of a box of cells
 SAMPLE = 0.7  # cells between two samples of a beam
 ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middle of one to that of the next
 
@@ -41,18 +42,33 @@ def mark_level(
 
     Returns: a window that holds all that may have changed, [i0, i1) x [j0, j1).
     """
+    size, n = evidence.shape[0], ranges.shape[0]
+    cos, sin, reach = np.zeros(n), np.zeros(n), np.zeros(4)
+    reach[LOW_X], reach[HIGH_X], reach[LOW_Y], reach[HIGH_Y] = x, x, y, y
+    for k in range(n):
+        cos[k], sin[k] = math.cos(bearings[k]), math.sin(bearings[k])
+    mark_ends(evidence, touched, number, x, y, cos, sin, ranges, look, join, reach)
+    mark_free(evidence, covered, touched, number, x, y, cos, sin, ranges, look, cover, join, reach)
+    return (
+        max(0, math.floor(reach[LOW_X])), min(size, math.floor(reach[HIGH_X]) + 1),
+        max(0, math.floor(reach[LOW_Y])), min(size, math.floor(reach[HIGH_Y]) + 1),
+    )  # fmt: skip
+
+
+@inline_kernel
+def mark_ends(
+    evidence: Bytes, touched: Bytes, number: int, x: float, y: float, cos: Array, sin: Array, ranges: Array, look: float, join: float, reach: Array
+) -> None:
+    """The first half of `mark_level`: what stands where beams end. cos, sin: (n,) of the bearings."""
     size = evidence.shape[0]
-    low_x, high_x, low_y, high_y = x, x, y, y
     last_x, last_y, has_last = 0.0, 0.0, False
-    cos, sin = np.zeros(ranges.shape[0]), np.zeros(ranges.shape[0])
     for k in range(ranges.shape[0]):
         r = ranges[k]
-        cos[k], sin[k] = math.cos(bearings[k]), math.sin(bearings[k])
         if not (0.0 < r < look):
             has_last = False
             continue
         hit_x, hit_y = x + r * cos[k], y + r * sin[k]
-        low_x, high_x, low_y, high_y = min(low_x, hit_x), max(high_x, hit_x), min(low_y, hit_y), max(high_y, hit_y)
+        widen(reach, hit_x, hit_y)
         steps = 1
         if has_last:
             gap = math.hypot(hit_x - last_x, hit_y - last_y)
@@ -64,17 +80,25 @@ def mark_level(
                 touched[i, j] = number
                 evidence[i, j] = min(MOST, evidence[i, j] + HIT)
         last_x, last_y, has_last = hit_x, hit_y, True
+
+
+@inline_kernel
+def mark_free(
+    evidence: Bytes, covered: Bytes, touched: Bytes, number: int, x: float, y: float, cos: Array, sin: Array, ranges: Array, look: float,
+    cover: float, join: float, reach: Array,
+) -> None:  # fmt: skip
+    """The second half: what the beams pass, where nothing was found to stand."""
+    size, n = evidence.shape[0], ranges.shape[0]
     flat_evidence, flat_covered, flat_touched = evidence.reshape(-1), covered.reshape(-1), touched.reshape(-1)
     places = np.zeros(max(0, int(look / SAMPLE)) + 1, dtype=np.int32)
-    for k in range(ranges.shape[0]):
+    for k in range(n):
         r = ranges[k]
         if not r > 0.0:
             continue
-        if 0 < k < ranges.shape[0] - 1:
+        if 0 < k < n - 1:
             r = min(r, max(ranges[k - 1], ranges[k + 1]) + join)
         count = max(0, int((min(r, look) - 1.0) / SAMPLE))
-        end_x, end_y = x + SAMPLE * count * cos[k], y + SAMPLE * count * sin[k]
-        low_x, high_x, low_y, high_y = min(low_x, end_x), max(high_x, end_x), min(low_y, end_y), max(high_y, end_y)
+        widen(reach, x + SAMPLE * count * cos[k], y + SAMPLE * count * sin[k])
         cells_along(places[:count], x, y, cos[k], sin[k], size)
         for m in range(count):
             place = places[m]
@@ -85,7 +109,13 @@ def mark_level(
             if flat_touched[place] != number:
                 flat_touched[place] = number
                 flat_evidence[place] = max(LEAST, flat_evidence[place] - MISS)
-    return max(0, math.floor(low_x)), min(size, math.floor(high_x) + 1), max(0, math.floor(low_y)), min(size, math.floor(high_y) + 1)
+
+
+@inline_kernel
+def widen(reach: Array, x: float, y: float) -> None:
+    """Let a box of cells, `LOW_X` and so on, hold a place too."""
+    reach[LOW_X], reach[HIGH_X] = min(reach[LOW_X], x), max(reach[HIGH_X], x)
+    reach[LOW_Y], reach[HIGH_Y] = min(reach[LOW_Y], y), max(reach[HIGH_Y], y)
 
 
 @inline_kernel
@@ -101,16 +131,16 @@ def cells_along(places: Counts, x: float, y: float, c: float, s: float, size: in
 def mark_ground(
     low_s: Floats, first_s: Floats, evidence: Bytes, x: float, y: float, yaw: float, angles: Array, ranges: Array, cell: float, tilt: float,
     height: float, look: float, step: float, now_s: float, again_s: float,
-) -> None:  # fmt: skip
+) -> bool:  # fmt: skip
     """Enter what a scan tilted down by `tilt` says of the ground into `low_s`: metres, (x, y) in cells.
 
     Ends more than `step` above the ground are low obstacles, once they are seen again `again_s` later (`first_s` = when first); a beam that runs on
     more than `step` below the ground has found a hole, where it went through the ground; both only where the beam before says the same.
-    Ground that is where it should be takes old marks away.
+    Ground that is where it should be takes old marks away. Returns: whether anything counts as lying low now.
     """
     size = low_s.shape[0]
     sin, cos = math.sin(tilt), math.cos(tilt)
-    before = 0
+    before, found = 0, False
     for k in range(ranges.shape[0]):
         r = ranges[k]
         fall = math.cos(angles[k]) * sin
@@ -133,9 +163,10 @@ def mark_ground(
         if verdict == LEVEL:
             low_s[i, j] = first_s[i, j] = -1.0
         elif verdict == HOLE or again_s <= 0.0 or again_s <= now_s - first_s[i, j] <= FORGOTTEN_S:
-            low_s[i, j] = now_s
+            low_s[i, j], found = now_s, True
         elif evidence[i, j] <= 0 and (first_s[i, j] < 0.0 or now_s - first_s[i, j] > FORGOTTEN_S):
             first_s[i, j] = now_s
+    return found
 
 
 @kernel
@@ -205,73 +236,3 @@ def spread_over(row: Floats, beside: Floats) -> None:
     before, at, after = beside[:-2], beside[1:-1], beside[2:]
     for b in range(row.shape[0]):
         row[b] = min(min(row[b], at[b] + ACROSS), min(before[b], after[b]) + DIAGONALLY)
-
-
-@kernel
-def along_line(grid: Floats, i: float, j: float, to_i: float, to_j: float, count: int) -> Array:
-    """The cells under `count` points evenly on the line from (i, j) to (to_i, to_j), ends included; beyond the edge the nearest cell."""
-    most = grid.shape[0] - 1
-    out = np.empty(count)
-    for k in range(count):
-        share = k / (count - 1)
-        at_i, at_j = math.floor(i + share * (to_i - i)), math.floor(j + share * (to_j - j))
-        out[k] = grid[min(max(at_i, 0), most), min(max(at_j, 0), most)]
-    return out
-
-
-@kernel
-def under_points(grid: Floats, points: Array, cell_m: float, i0: int, j0: int) -> Array:
-    """The cells under points (n, 2) in metres, of a grid whose first cell is (i0, j0); beyond the edge the nearest cell."""
-    most = grid.shape[0] - 1
-    out = np.empty(points.shape[0])
-    for k in range(points.shape[0]):
-        at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
-        out[k] = grid[min(max(at_i, 0), most), min(max(at_j, 0), most)]
-    return out
-
-
-@kernel
-def all_free(evidence: Bytes, points: Array, cell_m: float, i0: int, j0: int) -> bool:
-    """Whether all cells under points (n, 2) in metres were seen free; beyond the edge the nearest cell."""
-    most = evidence.shape[0] - 1
-    for k in range(points.shape[0]):
-        at_i, at_j = math.floor(points[k, 0] / cell_m) - i0, math.floor(points[k, 1] / cell_m) - j0
-        if evidence[min(max(at_i, 0), most), min(max(at_j, 0), most)] >= 0:
-            return False
-    return True
-
-
-@kernel
-def under_places(grid: Floats, points: Array, origin: tuple[float, float, float], cell_m: float) -> Array:
-    """The cells under points (n, 2) in metres, as lengths, of a grid that lies as `maps.raster.Frame` says; 0 beyond its edge."""
-    out = np.zeros(points.shape[0])
-    c, s = math.cos(origin[2]), math.sin(origin[2])
-    for k in range(points.shape[0]):
-        out[k] = length_at(grid, points[k, 0] - origin[0], points[k, 1] - origin[1], c, s, cell_m)
-    return out
-
-
-@inline_kernel
-def length_at(grid: Floats, dx_m: float, dy_m: float, c: float, s: float, cell_m: float) -> float:
-    """The cell of a grid under a place, as a length; (c, s) is the direction in which its columns count. 0 beyond its edge."""
-    row, column = (c * dy_m - s * dx_m) / cell_m, (c * dx_m + s * dy_m) / cell_m
-    if 0.0 <= row < grid.shape[0] and 0.0 <= column < grid.shape[1]:
-        return float(grid[int(row), int(column)] * np.float32(cell_m))
-    return 0.0
-
-
-@kernel
-def draw_tight(way: Array, room_m: Array, rounds: int, pull: float, grid: Floats, origin: tuple[float, float, float], cell_m: float) -> None:
-    """Draw each point of a way (n, 2) to the middle of its neighbours, by the share `pull` in each round, but never to where it has less room
-    than `room_m` (n,) says. The grid is that of `under_places`; the ends stay.
-    """
-    c, s, count = math.cos(origin[2]), math.sin(origin[2]), way.shape[0]
-    for _ in range(rounds):
-        old_x, old_y = way[0, 0], way[0, 1]  # of the point before, as it was before this round
-        for k in range(1, count - 1):
-            x, y = way[k, 0], way[k, 1]
-            new_x = x + pull * (0.5 * (old_x + way[k + 1, 0]) - x)
-            new_y = y + pull * (0.5 * (old_y + way[k + 1, 1]) - y)
-            if length_at(grid, new_x - origin[0], new_y - origin[1], c, s, cell_m) >= room_m[k]:
-                way[k, 0], way[k, 1] = new_x, new_y
-            old_x, old_y = x, y

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.local_grid import CELLS
+from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.outline import Array, Planar
 
 STEPS = 120  # of the search for the smallest circle around points

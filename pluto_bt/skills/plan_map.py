@@ -9,7 +9,8 @@ import numpy as np
 
 from pluto_bt.maps.raster import OCCUPIED, Frame, drawn, frame_of
 from pluto_bt.maps.world import World
-from pluto_bt.skills.map_kernels import Floats, clearances, draw_tight, under_places
+from pluto_bt.skills.grid_kernels import draw_tight, under_places
+from pluto_bt.skills.map_kernels import Floats, clearances
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.window import Cell
 

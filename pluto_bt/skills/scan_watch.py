@@ -6,6 +6,7 @@ The one judge of the laser. Avoidance and stop filter have one each, with limits
 from __future__ import annotations
 
 import math
+from enum import StrEnum
 
 import numpy as np
 
@@ -21,6 +22,14 @@ MOVED_M, MOVED_RAD = 0.02, 0.02  # after so much motion two scans cannot be equa
 NO_PLACE = "the odometry comes too late: it is not known from where the newest scan was taken"  # a late scan is told by its age
 NO_ANGLE = "the wrist is silent: it is not known where the laser looked"
 RETURNS = 20  # in half a scan: fewer may well stay the same, an empty field always looks the same
+
+
+class Lack(StrEnum):
+    """What is missing to tell from where a scan was taken."""
+
+    NOTHING = ""
+    ODOMETRY = "odometry"  # it does not reach to the stamp of the scan, or is too old
+    WRIST = "wrist"  # it is silent, and may have moved since
 
 
 def _bad(text: str, code: LinkStatus = LinkStatus.LASER_SLOW_STOP, word: str = reasons.LASER_STALE) -> Verdict:
@@ -46,8 +55,8 @@ class ScanWatch:
         self._stale_s = stale_s or self._laser.arrival_delay_s + 1.25 / self._laser.rate_hz
         self._holes = holes
 
-    def look(self, scan: LaserScan, laser: Planar | None, lacks: str = "") -> bool:
-        """Judge a scan taken from `laser` (None: nobody knows where, for want of `lacks`, odometry or wrist); True if it may be used."""
+    def look(self, scan: LaserScan, laser: Planar | None, lacks: Lack = Lack.NOTHING) -> bool:
+        """Judge a scan taken from `laser` (None: nobody knows where, for want of `lacks`); True if it may be used."""
         fault = self._judge(scan, laser, lacks)
         if self._last is not None and scan.stamp_s - self._last.stamp_s > self._stale_s:
             self._good_in_a_row = 0
@@ -71,7 +80,7 @@ class ScanWatch:
             self._good_in_a_row = 0
         return self._fault
 
-    def _judge(self, scan: LaserScan, laser: Planar | None, lacks: str) -> Verdict:
+    def _judge(self, scan: LaserScan, laser: Planar | None, lacks: Lack) -> Verdict:
         ranges = scan.ranges_m
         usable = (ranges > 0.0) & (ranges < math.inf)  # NaN compares False
         n_usable = int(np.count_nonzero(usable))
@@ -81,7 +90,7 @@ class ScanWatch:
             share = 1.0 - n_usable / max(1, len(ranges))
             return _bad(f"{share:.0%} of the beams give no usable number, {self._holes:.0%} are allowed")
         if laser is None:
-            return _bad(NO_ANGLE, word=reasons.WRIST_STALE) if lacks == "wrist" else Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
+            return _bad(NO_ANGLE, word=reasons.WRIST_STALE) if lacks is Lack.WRIST else Verdict(reason=reasons.ODOMETRY_STALE, text=NO_PLACE)
         half = len(ranges) // 2
         for which, part in enumerate((slice(None, half), slice(half, None))):
             if self._is_frozen(which, ranges, part, laser):

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.rolling import roll
 
@@ -15,6 +16,8 @@ BEHIND_M = 0.9  # the ball is let down so far behind the robot …
 BEGIN_EVERY = 5  # … or by so many steps of the first ball farther on, where it fits
 ASIDE_M = 0.3  # a ball that is pushed farther aside where it begins does not fit between the sides
 BENDS_M = 0.35  # points lie as close in bends as on an arc that is so much wider
+X, Y, TOUCHED_X, TOUCHED_Y = range(4)  # columns of what `roll` gives
+NORMAL = 2  # column of a path
 EVERY, LEFT_OUT_M = 4, 1.5  # a place of the first ball that the second one comes no nearer to is left out; so many steps are compared at once
 
 
@@ -30,15 +33,20 @@ def inside(chain: Array, first: Array, radius_m: float, large_m: float, distance
     start, end = _let_down(chain, first, radius_m, large_m), first[-1]
     if start is None or len(rows := roll(chain, *start, large_m, STEP_M, STEPS)) < STEPS:
         return None
-    normals = np.arctan2(rows[:, 1] - rows[:, 3], rows[:, 0] - rows[:, 2])
-    last = np.flatnonzero((rows[:, 2] == end[2]) & (rows[:, 3] == end[3]))
-    turned = np.remainder(normals[last] - math.atan2(end[1] - end[3], end[0] - end[2]) + math.pi, math.tau) - math.pi
-    over = last[turned >= 0.0]
-    if not len(over):
-        return None  # it never came to the end
-    count = max(int(over[0]), 2)  # beyond the last point nothing is known
-    rows, normals = rows[:count], normals[:count]
-    return None if _leaves_out(rows, first) else _offset(rows, np.unwrap(normals), large_m - distance_m)
+    normals_rad = np.arctan2(rows[:, 1] - rows[:, 3], rows[:, 0] - rows[:, 2])
+    path = along(rows, normals_rad, first, math.atan2(end[1] - end[3], end[0] - end[2]), large_m - distance_m)
+    if not len(path):
+        return None
+    normals_rad = path[:, NORMAL].copy()
+    path[:, X] -= (large_m - distance_m) * np.cos(normals_rad)
+    path[:, Y] -= (large_m - distance_m) * np.sin(normals_rad)
+    path[:, NORMAL] += 0.5 * math.pi
+    return path
+
+
+def warm() -> None:
+    """Use the kernel once, so that no later use waits for its compilation."""
+    along(np.zeros((1, 4)), np.zeros(1), np.zeros((1, 4)), 0.0, 0.0)
 
 
 def _let_down(chain: Array, first: Array, radius_m: float, large_m: float) -> tuple[float, float] | None:
@@ -51,22 +59,68 @@ def _let_down(chain: Array, first: Array, radius_m: float, large_m: float) -> tu
     return None
 
 
-def _leaves_out(rows: Array, first: Array) -> bool:
-    """True if the ball turns back where the first one goes on to its last point: between two walls that it jams between."""
-    asked = first[first[:, 2] != first[-1, 2]][::EVERY]
-    apart_x, apart_y = asked[:, :1] - rows[::EVERY, 0], asked[:, 1:2] - rows[::EVERY, 1]
-    return bool(((apart_x**2 + apart_y**2).min(axis=1) > LEFT_OUT_M**2).any())
+@kernel
+def along(rows: Array, normals_rad: Array, first: Array, end_rad: float, inner_m: float) -> Array:
+    """Where the second ball is on its way to the end of the first one, so closely that a path `inner_m` from its middle has no gaps.
 
-
-def _offset(rows: Array, normals_rad: Array, inner_m: float) -> Array:
-    """The path `inner_m` from the ball's middle towards where it touches; where it stops and touches anew, an arc around its middle."""
-    steps = np.maximum(1, np.ceil(np.abs(np.diff(normals_rad)) * (inner_m + BENDS_M) / STEP_M)).astype(np.intp)
-    which = np.repeat(np.arange(len(steps)), steps)
-    share = (np.arange(len(which)) - np.repeat(np.cumsum(steps) - steps, steps)) / steps[which]
-    normal = normals_rad[which] + share * np.diff(normals_rad)[which]
-    middle = rows[which, :2] + share[:, None] * np.diff(rows[:, :2], axis=0)[which]
-    path = np.zeros((len(which), 5))
-    path[:, 0], path[:, 1] = middle[:, 0] - inner_m * np.cos(normal), middle[:, 1] - inner_m * np.sin(normal)
-    path[:, 2] = normal + 0.5 * math.pi
-    path[:, 3:] = rows[which, 2:]
+    Args:
+        rows, first: (n, 4), (k, 4) how the balls roll, as `roll` gives them.
+        normals_rad: (n,) direction from what the second ball touches to its middle. end_rad: the same of the first ball at its end.
+    Returns: (m, 5) middle x, y, normal (not wrapped), touched x, y; where the ball stops and touches anew its normal turns in small steps.
+        None of them if the ball never comes to the end, or leaves something out.
+    """
+    count = way_to(rows, normals_rad, first[-1, TOUCHED_X], first[-1, TOUCHED_Y], end_rad)
+    if count == 0 or leaves_out(rows, count, first):
+        return np.zeros((0, 5))
+    steps, turned_rad, total = np.ones(count, dtype=np.intp), np.zeros(count), 0
+    for k in range(1, count):
+        turned_rad[k] = turned_rad[k - 1] + leap_rad(normals_rad[k] - normals_rad[k - 1])
+        turn_rad = abs((normals_rad[k] + turned_rad[k]) - (normals_rad[k - 1] + turned_rad[k - 1]))
+        steps[k] = max(1, math.ceil(turn_rad * (inner_m + BENDS_M) / STEP_M))
+        total += steps[k]
+    path, at = np.zeros((total, 5)), 0
+    for k in range(1, count):
+        x, y, normal_rad = rows[k - 1, X], rows[k - 1, Y], normals_rad[k - 1] + turned_rad[k - 1]
+        for step in range(steps[k]):
+            share = step / steps[k]
+            path[at, X], path[at, Y] = x + share * (rows[k, X] - x), y + share * (rows[k, Y] - y)
+            path[at, NORMAL] = normal_rad + share * ((normals_rad[k] + turned_rad[k]) - normal_rad)
+            path[at, 3], path[at, 4], at = rows[k - 1, TOUCHED_X], rows[k - 1, TOUCHED_Y], at + 1
     return path
+
+
+@inline_kernel
+def way_to(rows: Array, normals_rad: Array, end_x: float, end_y: float, end_rad: float) -> int:
+    """How many rows there are up to where the ball touches the end and has turned as far as the first one; beyond that nothing is known."""
+    for k in range(rows.shape[0]):
+        is_at_end = rows[k, TOUCHED_X] == end_x and rows[k, TOUCHED_Y] == end_y
+        if is_at_end and (normals_rad[k] - end_rad + math.pi) % math.tau - math.pi >= 0.0:
+            return max(k, 2)
+    return 0
+
+
+@inline_kernel
+def leaves_out(rows: Array, count: int, first: Array) -> bool:
+    """True if the ball turns back where the first one goes on to its last point: between two walls that it jams between."""
+    asked = 0
+    for i in range(first.shape[0]):
+        if first[i, TOUCHED_X] == first[-1, TOUCHED_X]:
+            continue
+        if asked % EVERY == 0:
+            least = math.inf
+            for k in range(0, count, EVERY):
+                dx, dy = first[i, X] - rows[k, X], first[i, Y] - rows[k, Y]
+                least = min(least, dx * dx + dy * dy)
+            if least > LEFT_OUT_M**2:
+                return True
+        asked += 1
+    return False
+
+
+@inline_kernel
+def leap_rad(turn_rad: float) -> float:
+    """What must be added to all angles after a turn that is more than half a circle, for the shorter way round to be meant."""
+    if abs(turn_rad) < math.pi:
+        return 0.0
+    shorter_rad = (turn_rad + math.pi) % math.tau - math.pi
+    return (math.pi if shorter_rad == -math.pi and turn_rad > 0.0 else shorter_rad) - turn_rad

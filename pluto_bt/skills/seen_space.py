@@ -12,6 +12,7 @@ import numpy as np
 from pluto_bt.blackboard.messages import LaserScan
 from pluto_bt.maps.platform import Sonar
 from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.grid_shift import shift
 from pluto_bt.skills.lone_beams import believed_ends
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.seen_kernels import CELL_M, LOW, NEVER, TOUCHING_M, Counts, hear_cones, place_cones, put_all, see_beams, stand
@@ -143,28 +144,15 @@ class SeenSpace:
             return
         half = len(self.seen) // 2
         corner = (at[0] - half, at[1] - half)
-        moved = (corner[0] - self._corner[0], corner[1] - self._corner[1])
+        moved = (corner[1] - self._corner[1], corner[0] - self._corner[0])  # rows, columns
         self._corner, self._middle = corner, at
-        self.seen = _shifted(self.seen, *moved)
-        self._heard = np.stack([_shifted(layer, *moved) for layer in self._heard])
-        self.stamps = np.stack([_shifted(layer, *moved) for layer in self.stamps])
-        self.spots = np.stack([_shifted(layer, *moved) for layer in self.spots])
+        for cells in (self.seen, *self._heard, *self.stamps, *self.spots):
+            shift(cells, *moved, NEVER)
 
     @property
     def is_empty(self) -> bool:
         """True while nothing stands in the cells."""
         return not bool((self.stamps > NEVER).any())
-
-
-def _shifted(cells: Array, columns: int, rows: int) -> Array:
-    """The cells as seen from a corner that moved by so many columns and rows; new ones are NEVER."""
-    n = len(cells)
-    out = np.full(cells.shape, NEVER)
-    if abs(columns) < n and abs(rows) < n:
-        to_rows, to_columns = slice(max(0, -rows), min(n, n - rows)), slice(max(0, -columns), min(n, n - columns))
-        from_rows, from_columns = slice(max(0, rows), min(n, n + rows)), slice(max(0, columns), min(n, n + columns))
-        out[to_rows, to_columns] = cells[from_rows, from_columns]
-    return out
 
 
 def warm() -> None:

@@ -12,7 +12,7 @@ from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.obstacles import Obstacles
 from pluto_bt.skills.outline import Array, Outline, Planar
-from pluto_bt.skills.scan_watch import ScanWatch
+from pluto_bt.skills.scan_watch import Lack, ScanWatch
 from pluto_bt.skills.sonar import SonarRing, unexplained
 from pluto_bt.skills.verdict import ALL_WELL, Verdict
 
@@ -22,12 +22,12 @@ BEYOND_M = 1.0  # what explains an echo may lie a little beyond the reach
 
 class ScanView(NamedTuple):
     """A scan with the place it was taken from; `laser` is in the frame of dead reckoning, None where that is not known (any more), for want of
-    what `lacks` says: "odometry" or "wrist"."""
+    what `lacks` says."""
 
     scan: LaserScan
     laser: Planar | None
     tilt_rad: float = 0.0
-    lacks: str = ""
+    lacks: Lack = Lack.NOTHING
 
 
 class Sight:

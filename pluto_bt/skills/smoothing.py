@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from pluto_bt.skills.map_kernels import draw_tight
+from pluto_bt.skills.grid_kernels import draw_tight
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.plan_map import PlanMap
 

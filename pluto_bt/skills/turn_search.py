@@ -55,19 +55,10 @@ def search(
         x, y = places[p, 0], places[p, 1]
         if field_at(field, x, y) < turn_m:
             continue
-        cheapest = NEVER
-        for i in range(-1, corner + 1, EVERY):
-            from_x, from_y, heading = (robot[0], robot[1], robot[2]) if i < 0 else (path[i, 0], path[i, 1], path[i, 2])
-            to_headings[i + 1] = _heading(from_x, from_y, x, y, heading)
-            to_costs[i + 1] = _leg(field, from_x, from_y, x, y, camera, least_m) + (begin + so_far[i] if i >= 0 else 0.0)
-            to_costs[i + 1] += _kink(field, from_x, from_y, heading, to_headings[i + 1], camera)
-            cheapest = min(cheapest, to_costs[i + 1])
+        cheapest = _ways_there(field, robot, path, corner, x, y, camera, least_m, begin, so_far, to_costs, to_headings)
         if cheapest >= least:
             continue
-        for j in range(beyond, n, EVERY):
-            back_headings[j] = _heading(x, y, path[j, 0], path[j, 1], path[j, 2])
-            back_costs[j] = _leg(field, x, y, path[j, 0], path[j, 1], camera, least_m) + so_far[n - 1] - so_far[j]
-            back_costs[j] += _kink(field, path[j, 0], path[j, 1], back_headings[j], path[j, 2], camera)
+        _ways_back(field, path, beyond, x, y, camera, least_m, so_far, back_costs, back_headings)
         _swing(field, x, y, camera, swing)
         for i in range(-1, corner + 1, EVERY):
             for j in range(beyond, n, EVERY):
@@ -122,6 +113,37 @@ def _leg(field: Array, x_m: float, y_m: float, to_x_m: float, to_y_m: float, cam
             return NEVER
         cost += _fault(field, x, y, heading_rad, camera)
     return length_m * (cost / count + LEG)
+
+
+@inline_kernel
+def _ways_there(
+    field: Array, robot: Array, path: Array, corner: int, x: float, y: float, camera: Array, least_m: float, begin: float, so_far: Array,
+    costs: Array, headings: Array,
+) -> float:  # fmt: skip
+    """Fill in what the way to a place costs, from the robot (entry 0) and from rows of the path (1 more than the row), and the heading there.
+
+    Returns: the least cost.
+    """
+    cheapest = NEVER
+    for i in range(-1, corner + 1, EVERY):
+        from_x, from_y, heading = (robot[0], robot[1], robot[2]) if i < 0 else (path[i, 0], path[i, 1], path[i, 2])
+        headings[i + 1] = _heading(from_x, from_y, x, y, heading)
+        costs[i + 1] = _leg(field, from_x, from_y, x, y, camera, least_m) + (begin + so_far[i] if i >= 0 else 0.0)
+        costs[i + 1] += _kink(field, from_x, from_y, heading, headings[i + 1], camera)
+        cheapest = min(cheapest, costs[i + 1])
+    return cheapest
+
+
+@inline_kernel
+def _ways_back(
+    field: Array, path: Array, beyond: int, x: float, y: float, camera: Array, least_m: float, so_far: Array, costs: Array, headings: Array
+) -> None:
+    """Fill in what the way back from a place to rows of the path costs, and the heading from there."""
+    n = path.shape[0]
+    for j in range(beyond, n, EVERY):
+        headings[j] = _heading(x, y, path[j, 0], path[j, 1], path[j, 2])
+        costs[j] = _leg(field, x, y, path[j, 0], path[j, 1], camera, least_m) + so_far[n - 1] - so_far[j]
+        costs[j] += _kink(field, path[j, 0], path[j, 1], headings[j], path[j, 2], camera)
 
 
 @inline_kernel

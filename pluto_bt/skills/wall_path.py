@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from pluto_bt.skills import pocket, wall_kernels
+from pluto_bt.skills import pocket, second_ball, wall_kernels
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.pocket import Pocket, Visit, visited
 from pluto_bt.skills.rolling import roll
@@ -98,6 +98,7 @@ class WallPath(NamedTuple):
 def warm() -> None:
     """Use the kernel once, so that no later use waits for its compilation."""
     roll(np.zeros((1, 2)), 0.0, 1.0, 1.0, STEP_M, 1)
+    second_ball.warm()
     pocket.warm()
     wall_kernels.warm()
 

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 HOME_X, HOME_Y, COS, SIN, BASE, HEIGHT, EDGE = range(7)  # of the rectangle, in cells; BASE <= 0 = there is none
 NARROW, MIDDLE, UNKNOWN = 3.0, 1.0, 0.3  # what a step costs more: where it is narrower than a path, beside the middle of the street, unseen
 TIGHT = 6.0  # where the robot stands nearer to something than the narrowest way allows
+SETTLED = -np.inf  # the cost of a place that is done with, else a greedy search goes over the same ground again and again where no way leads on
 ROUGH = 0.5  # cells: so much a wall of cells is rougher than the wall
 SIDE = 2  # a place is worth going to if much of the block of (2 * SIDE + 1)² cells around it is not covered
 WORTH = 0.4
@@ -88,6 +89,42 @@ def as_tight_as(clearance: float, least: float) -> float:
     return float(min(least, max(1.0, clearance - ROUGH)))
 
 
+@inline_kernel
+def is_end(
+    i: int, j: int, goal: tuple[int, int], goal_reach: float, clearance: Floats, room: float, covered: Bytes, evidence: Bytes, rectangle: Array
+) -> bool:
+    """Whether a way that is looked for may end at a cell; the arguments are those of `search`."""
+    if goal_reach >= 0.0:
+        return math.hypot(goal[0] - i, goal[1] - j) <= goal_reach
+    return bool(clearance[i, j] >= room and is_worth(i, j, covered, evidence, rectangle))
+
+
+@inline_kernel
+def may_pass(
+    i: int, j: int, free: float, start: tuple[int, int], goal: tuple[int, int], goal_reach: float, rectangle: Array, least: float,
+    least_at_start: float, least_at_goal: float, relaxed: float,
+) -> bool:  # fmt: skip
+    """Whether a way may lead over a cell with so much clearance: inside the rectangle, and with no less room than is asked for there."""
+    if not (free < least or rectangle[BASE] > 0.0):
+        return True
+    is_begun = math.hypot(i - start[0], j - start[1]) <= relaxed
+    is_ending = goal_reach >= 0.0 and math.hypot(i - goal[0], j - goal[1]) <= relaxed
+    if free < min(least_at_start if is_begun else least, least_at_goal if is_ending else least):
+        return False
+    is_home = math.hypot(i - rectangle[HOME_X], j - rectangle[HOME_Y]) <= relaxed  # the base runs through it
+    edge = -0.5 if is_begun or is_ending or is_home else rectangle[EDGE]
+    return not (rectangle[BASE] > 0.0 and inside_m(i, j, rectangle) < edge)
+
+
+@inline_kernel
+def dearness(free: float, is_unknown: bool, least: float, half: float, wide: float) -> float:
+    """What a step to a cell with so much clearance costs, a cell long."""
+    factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if is_unknown else 0.0)
+    if free < half:
+        factor += NARROW * (half - max(free, least)) / (half - least) + (TIGHT if free < least else 0.0)
+    return float(factor)
+
+
 @kernel
 def search(
     evidence: Bytes, covered: Bytes, clearance: Floats, start: tuple[int, int], goal: tuple[int, int], goal_reach: float, rectangle: Array,
@@ -110,21 +147,17 @@ def search(
             cost[i * columns + j] = np.inf
     begin = start[0] * columns + start[1]
     cost[begin], came[begin] = 0.0, begin
-    settled = np.zeros(rows * columns, dtype=np.uint8)  # else a greedy search goes over the same ground again and again where no way leads on
     count = push(keys, places, 0, 0.0, begin)
     least_at_start = as_tight_as(clearance[start[0], start[1]], least)
     least_at_goal = as_tight_as(clearance[goal[0], goal[1]], least) if goal_reach >= 0.0 else least
     while count > 0:
         count = pop(keys, places, count)
         at = int(places[count])
-        if settled[at] != 0:
+        here, cost[at] = cost[at], SETTLED
+        if here == SETTLED:
             continue
-        settled[at] = 1
         i, j = at // columns, at % columns
-        if goal_reach >= 0.0:
-            if math.hypot(goal[0] - i, goal[1] - j) <= goal_reach:
-                return at
-        elif clearance[i, j] >= room and is_worth(i, j, covered, evidence, rectangle):
+        if is_end(i, j, goal, goal_reach, clearance, room, covered, evidence, rectangle):
             return at
         for di in range(-1, 2):
             for dj in range(-1, 2):
@@ -133,21 +166,12 @@ def search(
                     continue
                 to = a * columns + b
                 step = 1.0 if di == 0 or dj == 0 else 1.41421356
-                if settled[to] != 0 or cost[to] <= cost[at] + step:
-                    continue  # known as near already as any step from here could bring it
+                if cost[to] <= here + step:
+                    continue  # settled, or known as near already as any step from here could bring it
                 free = clearance[a, b]
-                if free < least or rectangle[BASE] > 0.0:
-                    is_begun = math.hypot(a - start[0], b - start[1]) <= relaxed
-                    is_ending = goal_reach >= 0.0 and math.hypot(a - goal[0], b - goal[1]) <= relaxed
-                    if free < min(least_at_start if is_begun else least, least_at_goal if is_ending else least):
-                        continue
-                    is_home = math.hypot(a - rectangle[HOME_X], b - rectangle[HOME_Y]) <= relaxed  # the base runs through it
-                    if rectangle[BASE] > 0.0 and inside_m(a, b, rectangle) < (-0.5 if is_begun or is_ending or is_home else rectangle[EDGE]):
-                        continue
-                factor = 1.0 + MIDDLE * max(0.0, wide - free) / (wide - least) + (UNKNOWN if evidence[a, b] == 0 else 0.0)
-                if free < half:
-                    factor += NARROW * (half - max(free, least)) / (half - least) + (TIGHT if free < least else 0.0)
-                new = cost[at] + factor * step
+                if not may_pass(a, b, free, start, goal, goal_reach, rectangle, least, least_at_start, least_at_goal, relaxed):
+                    continue
+                new = here + dearness(free, evidence[a, b] == 0, least, half, wide) * step
                 if new < cost[to] - 1e-4:
                     cost[to], came[to] = new, at
                     ahead = greed * max(0.0, math.hypot(goal[0] - a, goal[1] - b) - goal_reach) if goal_reach >= 0.0 else 0.0

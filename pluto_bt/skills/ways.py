@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.local_grid import CELLS
+from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.map_kernels import Bytes, Floats
 from pluto_bt.skills.outline import Array, Outline, Planar
 from pluto_bt.skills.rectangle import Rectangle

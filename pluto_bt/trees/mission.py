@@ -21,7 +21,7 @@ from pluto_bt.trees.errors import RAISED, StepError, TickError
 from pluto_bt.trees.origin import NOWHERE, Origin
 from pluto_bt.trees.scopes import Board
 from pluto_bt.trees.stand_ins import StandIns
-from pluto_bt.trees.tracked import Tracked, letter_of
+from pluto_bt.trees.tracked import Tracked
 
 MAX_REPEATS: Final = 100_000  # of one tick; a Repeat without end around leaves that never wait would go on for ever
 
@@ -185,7 +185,9 @@ class Mission:
     def status_line(self) -> str:
         """One letter a node, depth first: its status (I R S F), or K if it was skipped in the last tick."""
         skipped = self._skipped()
-        return "".join([tracked.letter(skipped) for tracked in self._tracked] if skipped else [letter_of(one.node) for one in self._tracked])
+        if skipped:
+            return "".join([tracked.letter(skipped) for tracked in self._tracked])
+        return "".join([one.node.status._name_[0] for one in self._tracked])  # `letter_of`, without a call for each node at each tick
 
     def attach(self, robot: Any) -> None:
         """Join a robot that was not there yet when the mission was loaded."""

@@ -10,8 +10,9 @@ from pluto_bt.trees.loader.expand import Plan
 
 
 def letter_of(node: Any) -> str:
-    """The stored status of a node as one letter: I R S F."""
-    return "I" if node.status is IDLE else node.status._name_[0]
+    """The stored status of a node as one letter: I (py_trees' INVALID, which we call idle) R S F."""
+    letter: str = node.status._name_[0]
+    return letter
 
 
 class Tracked:

@@ -420,6 +420,13 @@ def test_get_current_pose_and_cancel_control(stage: Any, run: Any) -> None:
     assert stage.robot.commands[-1] == ActuatorState(stage.clock.now_s(), 0, acceleration=(0.0, 0.0), force=(1.0,))
 
 
+def test_get_current_pose_says_that_the_robot_was_carried_off(stage: Any, run: Any) -> None:
+    stage.robot.values["Localization/Check"] = FVectorState(0.0, (1.0, 0.0, 0.1), (2,), "lost", "the laser sees another place")
+    mission = run('<GetCurrentPose current_pose="{here}"/>')
+    assert mission.tick_once() == "FAILURE"
+    assert (mission.root.reason, mission.root.feedback_message) == ("lost", "lost: the laser sees another place")
+
+
 # ---------------------------------------------------------------------- what is not there yet
 
 

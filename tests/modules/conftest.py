@@ -48,7 +48,7 @@ class Rig:
             board=Blackboard(),
             clock=VirtualClock(),
             platform=Platform(name="rig", body=body, limits=limits, devices=Devices(**devices)),
-            inboxes={name: Inbox(name) for name in ("base", "filter", "drive", "avoid", "motion", "wrist", "alarms")},
+            inboxes={name: Inbox(name) for name in ("base", "filter", "drive", "avoid", "motion", "wrist", "arm", "alarms")},
             devices=self.devices,
             map=None,
             say=lambda *event: self.events.append(event),

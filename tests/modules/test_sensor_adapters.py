@@ -1,4 +1,4 @@
-"""The sensor adapters: sick, dmu, imu, compass, gps, speed, wrist."""
+"""The sensor adapters: sick, dmu, imu, compass, gps, speed, wrist; and the arm."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 
 from drivers.records import CompassRecord, GpsRecord, InertialRecord, ScanRecord, SpeedRecord, WristRecord
 from pluto_bt.blackboard.messages import ActuatorState, CompassState, GpsState, read_only
+from pluto_bt.modules.arm import Arm
 from pluto_bt.modules.compass import Compass
 from pluto_bt.modules.dmu import Dmu
 from pluto_bt.modules.gps import Gps
@@ -164,6 +165,42 @@ def test_an_axis_moves_only_with_velocity_and_acceleration_above_zero(make_rig: 
     wrist.step(0.2)
     assert moved[-1] == pytest.approx((1.0, -1.0, 0.5, math.radians(120)), abs=1e-3)
     assert rig.newest("wrist/command").position == pytest.approx((1.0, -1.0), abs=1e-3)
+
+
+NAN, REST = math.nan, (0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("position", "velocity", "acceleration"),
+    [((NAN, 0.0), (0.3, 0.3), (1.0, 1.0)), ((0.5, 0.2), (NAN, 0.3), (1.0, 1.0)), ((0.5, 0.2), (0.3, 0.3), (1.0, NAN)), ((0.5,), REST, REST)],
+    ids=["no angle", "no rate", "no acceleration", "half a pair"],
+)
+def test_a_command_that_makes_no_sense_moves_no_axis_and_is_told_once(make_rig: Any, position: Any, velocity: Any, acceleration: Any) -> None:
+    rig = make_rig()
+    wrist, moved = Wrist(rig.context), rig.devices["wrist"].driven
+    for k in range(3):
+        point(rig, position, velocity, acceleration)
+        wrist.step(0.1 * k)
+    assert moved == [] and rig.codes() == ["bad-command"]
+    point(rig, (0.5, NAN), (0.3, 0.0), (1.0, 0.0))
+    wrist.step(0.3)
+    assert len(moved) == 1, "an axis that is not to move needs no angle"
+    point(rig, position, velocity, acceleration)
+    wrist.step(0.4)
+    assert rig.codes() == ["bad-command"] * 2
+
+
+def test_an_arm_is_told_how_far_to_unfold_by_a_number_or_stays_and_says_so(make_rig: Any) -> None:
+    rig = make_rig()
+    arm, inbox = Arm(rig.context), rig.context.inboxes["arm"]
+    arm.start(0.0)
+    inbox.post("mission", ActuatorState(0.0, 0, (0.4, 0.0)))
+    arm.step(100.0)
+    for k in range(2):
+        inbox.post("mission", ActuatorState(0.0, 0, (NAN, 0.0)))
+        arm.step(101.0 + k)
+    assert rig.newest("arm/state").position[0] == pytest.approx(0.4)
+    assert rig.codes() == ["bad-command"]
 
 
 def test_a_stop_holds_the_wrist_where_it_is(make_rig: Any) -> None:

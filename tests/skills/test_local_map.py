@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from pluto_bt.blackboard.messages import LaserScan, read_only
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
-from pluto_bt.skills.local_map import CELLS, LocalMap
+from pluto_bt.skills.local_grid import CELLS
+from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.map_kernels import Floats, clearances
 from pluto_bt.skills.motion_parameters import MotionParameters
 
@@ -170,3 +171,55 @@ def test_scan_by_scan_clearance_is_that_of_a_whole_reckoning(seed: int, looks_do
             near = np.s_[i - 100 : i + 100, j - 100 : j + 100]  # farther off, what falls off the grid still counts
             assert np.array_equal(map.clearance[near], whole_clearance(map, now_s)[near])
         way_m += float(rng.uniform(0.0, 6.0))
+
+
+FAR = MotionParameters().wide_half_width_m
+
+
+def test_a_place_that_was_shut_is_open_again_by_itself_when_it_is_forgotten_however_far_it_is() -> None:
+    p = MotionParameters()
+    map, nothing = LocalMap(p), Scene(World("w"))
+    map.shut(35.0, 0.0, 0.5, 10.0)
+    map.refresh(10.0)
+    assert map.clearance_m(35.0, 0.0) == 0.0
+    map.add(scan(nothing, (0.0, 0.0, 0.0)), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    map.refresh(11.0 + p.ground_memory_s)
+    assert map.clearance_m(35.0, 0.0) == pytest.approx(FAR)
+    assert not map.reopen(11.0 + p.ground_memory_s), "there is nothing left to open"
+
+
+def test_a_place_that_was_erased_or_left_behind_cannot_be_opened_again() -> None:
+    map, nothing = LocalMap(MotionParameters()), Scene(World("w"))
+    map.shut(3.0, 0.0, 0.5, 10.0)
+    map.erase((3.0, 0.0), 4.0, inside=True)
+    assert not map.reopen(11.0)
+    map.shut(3.0, 0.0, 0.5, 12.0)
+    map.add(scan(nothing, (200.0, 0.0, 0.0)), (200.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    assert not map.reopen(13.0)
+    map.shut(203.0, 0.0, 0.5, 14.0)
+    map.erase((0.0, 0.0), 4.0, inside=True)
+    assert map.reopen(15.0), "another place was erased"
+
+
+def test_forgotten_feet_leave_the_way_free_at_the_next_refresh() -> None:
+    map, kerb = LocalMap(MotionParameters()), Scene(World("w", shapes=(box("kerb", 2.0, -3.0, 2.5, 3.0, 0.15),)))
+    for k in range(3):
+        map.add(scan(kerb, (0.0, 0.0, 0.0), 0.25, 0.5 * k), (0.0, 0.0, 0.0), HEIGHT_M, 0.25)
+    map.refresh(1.5)
+    i, j = np.nonzero(map.low_s > 0.0)
+    assert len(i)
+    map.forget_feet(np.column_stack(map.middle_m(i, j)))
+    map.refresh(1.6)
+    assert np.array_equal(map.clearance, whole_clearance(map, 1.6))
+    assert float(map.clearance.min()) * map.cell_m == pytest.approx(FAR)
+
+
+def test_a_look_at_even_ground_finds_nothing_low_and_costs_later_scans_nothing() -> None:
+    map, nothing = LocalMap(MotionParameters()), Scene(World("w"))
+    map.add(scan(nothing, (0.0, 0.0, 0.0), 0.25), (0.0, 0.0, 0.0), HEIGHT_M, 0.25)
+    assert not map.has_low
+    map.shut(3.0, 0.0, 0.5, 1.0)
+    assert map.has_low
+    map.add(scan(nothing, (0.0, 0.0, 0.0)), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    map.refresh(MotionParameters().ground_memory_s + 2.0)
+    assert not map.has_low

@@ -8,7 +8,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pluto_bt.skills.map_kernels import HIT, LEAST, MISS, MOST, SAMPLE, Bytes, Counts, changes, draw_tight, mark_level, under_places
+from pluto_bt.skills.grid_kernels import draw_tight, under_places
+from pluto_bt.skills.map_kernels import HIT, LEAST, MISS, MOST, SAMPLE, Bytes, Counts, changes, mark_level
 from pluto_bt.skills.outline import Array
 from pluto_bt.skills.path_following import BACK_M, can_cut, nearest_ahead
 

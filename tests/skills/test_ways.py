@@ -180,11 +180,11 @@ def test_what_was_shut_is_open_again_but_not_what_was_seen_there_since() -> None
     map.low_s[seen] = 12.0
     map.refresh(12.0)
     assert map.clearance_m(3.0, 0.0) == 0.0 and map.clearance_m(3.0, 6.0) == 0.0
-    assert map.reopen()
+    assert map.reopen(12.0)
     map.refresh(12.0)
     assert map.clearance_m(3.0, 0.0) > 4.0 and map.clearance_m(3.0, 6.0) == 0.0
     assert map.clearance_m(3.4, 6.0) > 0.0
-    assert not map.reopen(), "once"
+    assert not map.reopen(12.0), "once"
 
 
 def test_a_door_beside_home_is_passed_although_the_edge_of_the_rectangle_runs_through_it() -> None:

@@ -13,7 +13,7 @@ from pluto_bt.behaviours.leaf import Leaf, RobotLeaf
 from pluto_bt.behaviours.nav2.planning import value_of
 from pluto_bt.behaviours.nav2.ports import FRAMES, SERVICE
 from pluto_bt.behaviours.ports import Port
-from pluto_bt.behaviours.robot import Robot, pose_of
+from pluto_bt.behaviours.robot import Robot, pose_of, why_no_pose
 from pluto_bt.blackboard.messages import ActuatorState
 
 GOALS: Final = {"input_goals": Port(Destinations, False, "the goals")}
@@ -114,17 +114,17 @@ class GetNextFewGoals(GoalsLeaf):
         return self.hand_over(goals.having(goals[: int(self.get_input("num_goals"))]))
 
 
-class GetCurrentPose(Leaf):
+class GetCurrentPose(RobotLeaf):
     """Where the robot is; FAILURE if that is not known."""
 
     INPUT_PORTS = dict(FRAMES)
     OUTPUT_PORTS = {"current_pose": Port(Destination, False, "the robot's pose")}
 
-    def update(self) -> Status:
+    def act(self, robot: Robot) -> Status:
         """Answers at once."""
-        pose = pose_of(self.robot) if self.robot is not None else None
+        pose = pose_of(robot)
         if pose is None:
-            return self.fail("no-pose", "it is not known where the robot is")
+            return self.fail(*why_no_pose(robot))
         self._set_output("current_pose", Destination(pose[0], pose[1], math.degrees(pose[2]), "", round(self.now_s() * 1e9), "map"))
         return self.succeed(f"{pose[0]:.2f};{pose[1]:.2f}")
 
