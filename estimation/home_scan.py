@@ -15,6 +15,7 @@ from estimation.se2 import compose, inverse
 
 NEAR_M, NEAR_RAD = 0.1, 0.05  # so near to where it must be …
 IN_A_ROW = 3  # … and in so many scans
+ROUGHLY_M, ASIDE_M, ROUGHLY_RAD = 0.5, 0.2, 0.2  # a robot that only seemed elsewhere is so near, though its wheels slip or its gyro drifts
 
 
 class Home:
@@ -26,10 +27,19 @@ class Home:
 
     def is_back(self, scan: KeyScan, match: ScanStep | None) -> bool:
         """True if one scan after the other fits here. `match`: how the new one does, None if it was not compared."""
-        is_here = False
-        if self.key is not None and match is not None and is_good(match):
-            seen = compose(compose(self.key.arm, match.step), inverse(scan.arm))
-            off_m, aside_m, off_rad = difference(motion_between(self.key.at, scan.at).pose, seen)
-            is_here = math.hypot(off_m, aside_m) < NEAR_M and abs(off_rad) < NEAR_RAD
+        off = self._off(scan, match)
+        is_here = off is not None and math.hypot(*off[:2]) < NEAR_M and abs(off[2]) < NEAR_RAD
         self._count = self._count + 1 if is_here else 0
         return self._count >= IN_A_ROW
+
+    def is_near(self, scan: KeyScan, match: ScanStep | None) -> bool:
+        """True if one scan fits roughly where it must."""
+        off = self._off(scan, match)
+        return off is not None and abs(off[0]) < ROUGHLY_M and abs(off[1]) < ASIDE_M and abs(off[2]) < ROUGHLY_RAD
+
+    def _off(self, scan: KeyScan, match: ScanStep | None) -> tuple[float, float, float] | None:
+        """How far from where it must be a scan is seen (m along the way, m to the left, rad); None if that cannot be told."""
+        if self.key is None or match is None or not is_good(match):
+            return None
+        seen = compose(compose(self.key.arm, match.step), inverse(scan.arm))
+        return difference(motion_between(self.key.at, scan.at).pose, seen)

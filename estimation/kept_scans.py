@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections import deque
 
-from estimation.key_scan import LEAST_POINTS, KeyScan, best_match
+from estimation.key_scan import LEAST_POINTS, Beams, KeyScan, best_match
 from estimation.reckoning import Motion, motion_between
 from estimation.scan_match import ScanStep
 from estimation.se2 import Pose2
@@ -34,16 +34,14 @@ class KeptScans:
         """The robot is elsewhere, or what was reckoned since is known to be wrong."""
         self._scans.clear()
 
-    def compared(
-        self, scan: KeyScan, key: KeyScan, first_rad: float, step_rad: float, max_range_m: float
-    ) -> tuple[KeyScan, Motion, ScanStep] | None:
+    def compared(self, scan: KeyScan, key: KeyScan, beams: Beams, hint_m: float = 0.0) -> tuple[KeyScan, Motion, ScanStep] | None:
         """A scan held against the key scan, or against the kept one whose laser looked nearest if that shows more of the same; with the one that
-        it was held against. None if there is none."""
+        it was held against. None if there is none. `hint_m`: so much farther the last comparison with the key scan has seen the robot."""
         kept = min(reversed(self._scans), key=lambda one: pan_between(scan, one), default=key)
         best: tuple[KeyScan, Motion, ScanStep] | None = None
         for before in (key,) if kept is key else (key, kept):
             is_alike = pan_between(scan, before) <= MOST_PAN_RAD and len(before.ranges_m) == len(scan.ranges_m)
-            held = held_against(before, scan, first_rad, step_rad, max_range_m) if is_alike else None
+            held = held_against(before, scan, beams, hint_m if before is key else 0.0) if is_alike else None
             if held is not None and (best is None or held[1].points > best[2].points):
                 best = (before, *held)
                 if held[1].points >= LEAST_POINTS:
@@ -51,12 +49,12 @@ class KeptScans:
         return best
 
 
-def held_against(before: KeyScan, scan: KeyScan, first_rad: float, step_rad: float, max_range_m: float) -> tuple[Motion, ScanStep] | None:
+def held_against(before: KeyScan, scan: KeyScan, beams: Beams, hint_m: float = 0.0) -> tuple[Motion, ScanStep] | None:
     """What was reckoned between two scans, and how the second fits to the first; None if that is too long ago or too far away."""
     motion = motion_between(before.at, scan.at)
     if not 0.0 < motion.time_s <= LONGEST_GAP_S or is_far(motion.pose, FAR_KEYS):
         return None
-    return motion, best_match(before, scan, motion, first_rad, step_rad, max_range_m)
+    return motion, best_match(before, scan, motion, beams, hint_m)
 
 
 def is_far(pose: Pose2, times: float) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ class Sums(NamedTuple):
     """Everything since the start, at one stamp.
 
     Attributes:
-        pose: reckoned as localisation does, without what is made up for later.
+        pose: reckoned as localisation does; a way that was found wrong is put right at once, what is owed of a turn is left out.
         wheels_m, wheels_rad: way and turn as the wheels have them. turn_rad: as reckoned. measured_s: so long it was a sensor's.
     """
 
@@ -53,12 +54,30 @@ class Reckoning:
         """The newest stamp."""
         return self._moments[-1].stamp_s
 
-    def add(self, stamp_s: float, dt_s: float, way_m: float, turn_rad: float, wheels: tuple[float, float], is_measured: bool) -> None:
-        """One step: way and turn as reckoned; `wheels`: way and turn as the wheels have them."""
+    def add(self, stamp_s: float, dt_s: float, way_m: float, turn_rad: float, wheels: tuple[float, float], is_measured: bool) -> Sums:
+        """The sums after one more step: way and turn as reckoned; `wheels`: way and turn as the wheels have them."""
         last = self._moments[-1]
         pose = last.pose if way_m == turn_rad == 0.0 else compose(last.pose, arc(way_m, turn_rad))
         measured_s = last.measured_s + (dt_s if is_measured else 0.0)
-        self._moments.append(Sums(stamp_s, pose, last.wheels_m + wheels[0], last.wheels_rad + wheels[1], last.turn_rad + turn_rad, measured_s))
+        now = Sums(stamp_s, pose, last.wheels_m + wheels[0], last.wheels_rad + wheels[1], last.turn_rad + turn_rad, measured_s)
+        self._moments.append(now)
+        return now
+
+    def put_right(self, at: Sums, heading_rad: float, way_m: float, share: float) -> float:
+        """At a moment the robot was so much farther along a heading, and since then by such a share more of the wheels' way.
+
+        What was reckoned before stays, so motions that began before know of it. Returns how much farther it is by now, in metres.
+        """
+        c, s, farther_m = math.cos(heading_rad), math.sin(heading_rad), way_m
+        for i in range(len(self._moments) - 1, -1, -1):
+            moment = self._moments[i]
+            if moment.stamp_s < at.stamp_s:
+                break
+            more_m = way_m + share * (moment.wheels_m - at.wheels_m)
+            farther_m = more_m if i == len(self._moments) - 1 else farther_m
+            x, y, theta = moment.pose
+            self._moments[i] = moment._replace(pose=(x + c * more_m, y + s * more_m, theta))
+        return farther_m
 
     def at(self, stamp_s: float) -> Sums | None:
         """The sums at a stamp; None if it is not remembered."""

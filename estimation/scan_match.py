@@ -30,10 +30,11 @@ BASE_M, MOST_BASE = 0.3, 8  # a line is drawn through neighbours so far apart: w
 SPURIOUS = 4.0 * 2.0 * (0.01 / BASE_M) ** 2  # what noise in such a line tells of a motion along it, four times over: as much is not believed
 JOINED = 0.15  # neighbours whose ranges differ by a larger share lie on different things
 PRIOR_M, PRIOR_RAD = 0.3, 0.2  # how far off the guess may be; what the scans cannot see stays as guessed
+ASIDE_M = 0.012  # so far aside of where it is reckoned to be a robot on wheels may be between two scans
 FITS_M = 0.05  # a point so near its line is explained
 APART_M = 0.3  # a beam that ends so much earlier or later than foreseen saw something else
-FITS, FITTED_BEFORE, LONGER, SHORTER, LOOKED, VAR_X, VAR_Y, VAR_THETA = range(3, 11)
-RESULT_SIZE = 11
+FITS, FITTED_BEFORE, LONGER, SHORTER, LOOKED, VAR_X, VAR_Y, VAR_THETA, COV_XY = range(3, 12)
+RESULT_SIZE = 12
 
 
 class ScanStep(NamedTuple):
@@ -43,6 +44,7 @@ class ScanStep(NamedTuple):
         fits, fits_as_guessed: share of the points on their lines, after and before the matching. longer, shorter: share of the beams
             that ended at least 0.3 m later or earlier than foreseen. points: so many were compared.
         sigma_x_m, sigma_y_m, sigma_theta_rad: standard deviations in the laser's old frame, large where the scans see nothing across.
+        cov_xy_m2: large where they see only one wall, and that obliquely.
     """
 
     step: Pose2
@@ -54,6 +56,20 @@ class ScanStep(NamedTuple):
     sigma_x_m: float
     sigma_y_m: float
     sigma_theta_rad: float
+    cov_xy_m2: float = 0.0
+
+    def along(self, bearing_rad: float, dx_m: float, dy_m: float) -> tuple[float, float]:
+        """(m, standard deviation in m) of the motion along a bearing that explains a step of (dx, dy), all in the laser's old frame.
+
+        What only a wall says that is seen obliquely is a motion across it; of the robots that stand on its far side the one is meant that has moved
+        along the bearing, and aside no more than `ASIDE_M`.
+        """
+        c, s = math.cos(bearing_rad), math.sin(bearing_rad)
+        xx, xy, yy = self.sigma_x_m**2 + ASIDE_M**2 * s * s, self.cov_xy_m2 - ASIDE_M**2 * c * s, self.sigma_y_m**2 + ASIDE_M**2 * c * c
+        det = xx * yy - xy * xy
+        wx, wy = (c * yy - s * xy) / det, (s * xx - c * xy) / det
+        information = wx * c + wy * s
+        return (wx * dx_m + wy * dy_m) / information, 1.0 / math.sqrt(information)
 
 
 def match_scans(before_m: Array, now_m: Array, first_rad: float, step_rad: float, guess: Pose2, max_range_m: float) -> ScanStep:
@@ -70,8 +86,8 @@ def match_scans(before_m: Array, now_m: Array, first_rad: float, step_rad: float
     out = np.zeros(RESULT_SIZE)
     out[:3] = guess
     _match(before_m, now_m, first_rad, step_rad, max_range_m, out)
-    x, y, theta, fits, guessed, longer, shorter, looked, vx, vy, vt = out.tolist()
-    return ScanStep((x, y, theta), fits, guessed, longer, shorter, int(looked), math.sqrt(vx), math.sqrt(vy), math.sqrt(vt))
+    x, y, theta, fits, guessed, longer, shorter, looked, vx, vy, vt, cov_xy = out.tolist()
+    return ScanStep((x, y, theta), fits, guessed, longer, shorter, int(looked), math.sqrt(vx), math.sqrt(vy), math.sqrt(vt), cov_xy)
 
 
 @kernel
@@ -153,6 +169,7 @@ def _match(before_m: Array, now_m: Array, first_rad: float, step_rad: float, max
         if is_last or not det > 0.0:
             out[FITS], out[LONGER], out[SHORTER], out[LOOKED] = fits * share, longer * share, shorter * share, looked
             out[VAR_X], out[VAR_Y], out[VAR_THETA] = NOISE_M**2 * cxx / det, NOISE_M**2 * cyy / det, NOISE_M**2 * ctt / det
+            out[COV_XY] = NOISE_M**2 * cxy / det
             break
         step_x, step_y = (cxx * bx + cxy * by + cxt * bt) / det, (cxy * bx + cyy * by + cyt * bt) / det
         step_t = (cxt * bx + cyt * by + ctt * bt) / det

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from itertools import islice
 
 from estimation.debt import Debt
 from estimation.news import GYRO_DRIFT, GYRO_REFUSED, News
@@ -68,14 +69,22 @@ class TurnTrial:
             self.debt.owed += before_rad  # proved nothing till now
             self._accuse(off_rad, motion, lag_s, f"so do {motion.time_s:.1f} s of scans" if self._asks_wheels else "the laser denies it")
             return True
-        sum_rad = off_rad + before_rad
-        if not self._pieces or abs(sum_rad) <= max(LEAST_OF_LIAR_RAD if self.drift_radps else LEAST_SUM_RAD, noise_rad):
-            return False
-        whole = together([piece[2] for piece in self._pieces] + [motion])
-        if not self._is_alone(whole):
-            return False
-        self._accuse(sum_rad, whole, lag_s, f"so do the scans of {whole.time_s:.0f} s")
-        return True
+        return self._weigh_sums(off_rad, noise_rad, motion, lag_s)
+
+    def _weigh_sums(self, off_rad: float, noise_rad: float, motion: Motion, lag_s: float) -> bool:
+        """Over the shortest time in which the differences have grown enough: what was before a drift began does not water it down."""
+        least_rad = max(LEAST_OF_LIAR_RAD if self.drift_radps else LEAST_SUM_RAD, noise_rad)
+        sum_rad = off_rad
+        for k in range(len(self._pieces) - 1, -1, -1):
+            sum_rad += self._pieces[k][1]
+            if abs(sum_rad) <= least_rad:
+                continue
+            whole = together([*(piece[2] for piece in islice(self._pieces, k, None)), motion])
+            if self._is_alone(whole):
+                self.debt.owed += sum(piece[1] for piece in islice(self._pieces, k))  # proved nothing till now
+                self._accuse(sum_rad, whole, lag_s, f"so do the scans of {whole.time_s:.0f} s")
+                return True
+        return False
 
     def keep(self, stamp_s: float, off_rad: float, motion: Motion) -> None:
         """A comparison that is over, and proved nothing by itself."""

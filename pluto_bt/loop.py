@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Callable
 
+from estimation import levelled_scan
 from pluto_bt.blackboard.codes import Avoidance, CommandType
 from pluto_bt.blackboard.messages import ActuatorState
 from pluto_bt.resume import HELD
@@ -43,6 +44,8 @@ def rehearse(system: System, with_jobs: bool, with_walls: bool) -> None:
     if system.options.robot.devices.sonar is not None or system.options.robot.devices.laser is not None:
         obstacles.warm()
         seen_space.warm()
+    if system.options.robot.devices.wrist is not None:
+        levelled_scan.warm()
     if with_jobs:
         system.robot.surroundings.warm()
         plan_map.warm()

@@ -15,7 +15,7 @@ from typing import Annotated
 import msgspec
 from msgspec import Meta
 
-from estimation.covariance import StepNoise, as_nine, from_nine, moved
+from estimation.covariance import Covariance, StepNoise, as_nine, from_nine, moved, stepped
 from estimation.se2 import compose, inverse
 from estimation.track import Track
 from pluto_bt.blackboard.codes import Setter
@@ -102,12 +102,17 @@ class Local:
         now = self.track.now
         phi, psi = now.tilt
         x, y, theta = now.pose_odom
-        pose, nine = (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_odom)
+        pose, nine = (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(self._doubted(now.covariance_odom, theta))
         self._dead_reckoning.put(Pose(now.stamp_s, pose, nine), now_s)
         if now.pose_map is not now.pose_odom or now.covariance_map is not now.covariance_odom:  # else nobody has adjusted anything yet
             x, y, theta = now.pose_map
-            pose, nine = (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(now.covariance_map)
+            pose, nine = (x, y, 0.0, wrap_angle(theta), phi, psi), as_nine(self._doubted(now.covariance_map, theta))
         self._pose.put(Pose(now.stamp_s, pose, nine, self._box.set_by), now_s)
+
+    def _doubted(self, P: Covariance, theta_rad: float) -> Covariance:
+        """With what slipping wheels leave open for the moment, and what is owed."""
+        doubt_m = self._sources.check.way.doubt_m
+        return P if doubt_m == 0.0 else stepped(P, 0.0, 0.0, theta_rad, doubt_m**2, 0.0)
 
     def _accept(self, source: str, post: Pose, now_s: float) -> None:
         """Adjust the track by a post. The setter is checked again here: it may have changed since the post was left."""
@@ -167,4 +172,5 @@ class Local:
         increment = self.track.increment_covariance(-math.inf if self._scan_s is None else self._scan_s, stamp_s)
         self._scan_s = stamp_s
         self._laser_dead_reckoning.put(laser_pose(stamp_s, then.pose_odom, then.tilt, arm, increment, Setter.NOBODY), now_s)
-        self._laser_pose.put(laser_pose(stamp_s, then.pose_map, then.tilt, arm, then.covariance_map, self._box.set_by), now_s)
+        P = self._doubted(then.covariance_map, then.pose_map[2])
+        self._laser_pose.put(laser_pose(stamp_s, then.pose_map, then.tilt, arm, P, self._box.set_by), now_s)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from estimation.levelled_scan import levelled
 from estimation.motion_check import MotionCheck
 from estimation.news import FOUND, LOST, WHEELS_GRIP
 from estimation.track import Moment
@@ -48,10 +49,14 @@ class MotionCheckShown:
         if last is not None and _has_equal_half(last, scan.ranges_m, self._max_range_m):
             return  # a laser that repeats itself is no witness
         panned_rad, self._pan_rad = abs(arm.pan_rad - self._pan_rad), arm.pan_rad
-        if max(abs(arm.tilt_rad), abs(then.tilt[0]), abs(then.tilt[1])) > LEVEL_RAD or panned_rad > MOST_PAN_RAD:
+        if max(abs(then.tilt[0]), abs(then.tilt[1])) > LEVEL_RAD:
             return  # and what the scan before it told still waits to be confirmed
-        x, y = arm.pose_robot_laser[:2]
-        self._check.look(stamp_s, scan.ranges_m, scan.angle_min_rad, scan.angle_step_rad, (x, y, arm.pan_rad))
+        x, y, z = arm.pose_robot_laser[:3]
+        beams, place, is_level = (scan.angle_min_rad, scan.angle_step_rad), (x, y, arm.pan_rad), abs(arm.tilt_rad) <= LEVEL_RAD
+        if is_level and panned_rad <= MOST_PAN_RAD:
+            self._check.look(stamp_s, scan.ranges_m, *beams, place)
+        elif self._check.wants_glance(stamp_s):
+            self._check.glance(stamp_s, scan.ranges_m if is_level else levelled(scan.ranges_m, *beams, arm.tilt_rad, z), *beams, place)
 
     def found(self) -> None:
         """Somebody has posted where the robot is."""

@@ -130,7 +130,7 @@ class MotionSources:
         noise = self._noise
         turn_var = noise.gyro_turn_var_rad2(dt_s) if is_measured else noise.wheel_turn_var_rad2(distance_m, wheel_turn_rad)
         tilt = tilt if self.check.believes_tilt else LEVEL
-        return Step(stamp_s, arc(distance_m, turn_rad), noise.distance_var_m2(distance_m), turn_var, tilt)
+        return Step(stamp_s, arc(distance_m, turn_rad), noise.distance_var_m2(distance_m) + self.check.step_var_m2, turn_var, tilt)
 
     def _theta_at(self, stamp_s: float, now_s: float) -> tuple[float | None, bool, Tilt]:
         """(heading, whether its bias is known, tilt) of the sensor; None if it is missing or too old.

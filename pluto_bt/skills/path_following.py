@@ -13,11 +13,14 @@ from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.plan_parameters import PlanParameters
 
 NEAREST_M = 0.6  # the point ahead is never nearer than this, so that the robot does not slow down before it
+REACHED_M = 0.32  # what is nearer is reached: a goto is content with that, and would stand there for ever
+COMES_BACK_M = 0.1
 SEARCH_M = 3.0  # the robot is looked for so far along the path from where it was,
 BACK_M = 0.3  # and not beyond where the path leads away from it by so much: it may come back by the same way
 CUT_SHARE, MOST_CUT_M, LEAST_CUT_M = 0.5, 0.6, 0.08  # of the spare room beside the path, corners may be cut
 SHARES = (1.0, 0.8, 0.6, 0.45, 0.3)  # of the longest look ahead, that are tried
 CAME_ON_M = 0.3  # so much of the path is headway
+FARTHEST_M = 0.25  # points of a path are no farther apart; who writes one by hand only gives its corners
 
 
 class PathFollowing:
@@ -25,7 +28,8 @@ class PathFollowing:
 
     def __init__(self, points: Array, rooms_m: Callable[[Array], Array] | None, least_m: float, parameters: PlanParameters) -> None:
         """`rooms_m` tells how far points of the path are from what stands, if anybody knows; `least_m` of it the robot itself needs."""
-        self._points, self._parameters = np.array(points), parameters  # a copy: of one kind for the kernels, whatever the path's points are
+        points = filled(points)
+        self._points, self._parameters = points, parameters
         self._at_m: list[float] = [0.0, *np.cumsum(np.hypot(*np.diff(points, axis=0).T)).tolist()]
         spare = np.full(len(points), 0.3) if rooms_m is None else rooms_m(points) - least_m
         self._cut_m = np.clip(CUT_SHARE * spare, LEAST_CUT_M, MOST_CUT_M)
@@ -86,11 +90,39 @@ class PathFollowing:
             self._best_m, self._best_s = come_m, now_s
 
     def _ahead(self, robot: Planar) -> tuple[float, float]:
-        for share in SHARES:
-            stretch = self.stretch(max(NEAREST_M, share * self._parameters.ahead_m))
-            if can_cut(stretch, self._cut_m[self.place : self.place + len(stretch)], robot[0], robot[1]):
-                break
-        return float(stretch[-1, 0]), float(stretch[-1, 1])
+        while True:
+            for share in SHARES:
+                stretch = self.stretch(max(NEAREST_M, share * self._parameters.ahead_m))
+                if can_cut(stretch, self._cut_m[self.place : self.place + len(stretch)], robot[0], robot[1]):
+                    break
+            last = self.place + farthest_first(stretch, robot[0], robot[1])
+            away_m = math.dist(self._points[last], robot[:2])
+            if away_m >= REACHED_M or last == len(self._points) - 1:
+                return float(self._points[last, 0]), float(self._points[last, 1])
+            self.place = last + 1  # there already
+
+
+def farthest_first(points: Array, x_m: float, y_m: float) -> int:
+    """The last of the points (n, 2) of a way, or the one at a sharp corner from which on it comes back to the place."""
+    best, most_m = 0, 0.0
+    for k, (px, py) in enumerate(points.tolist()):
+        away_m = math.hypot(px - x_m, py - y_m)
+        if away_m < most_m - COMES_BACK_M:
+            return best
+        if away_m >= most_m:
+            best, most_m = k, away_m
+    return len(points) - 1
+
+
+def filled(points: Array) -> Array:
+    """The same way (n, 2) with points between those that are farther apart than `FARTHEST_M`; a copy, of one kind for the kernels."""
+    points = np.array(points)
+    pieces = np.maximum(1, np.ceil(np.hypot(*np.diff(points, axis=0).T) / FARTHEST_M)).astype(int)
+    legs = np.repeat(np.arange(len(pieces)), pieces)
+    if len(legs) == len(pieces):
+        return points
+    share = (np.arange(len(legs)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[legs]
+    return np.vstack((points[legs] + share[:, None] * (points[legs + 1] - points[legs]), points[-1:]))
 
 
 @kernel

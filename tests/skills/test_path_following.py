@@ -39,6 +39,39 @@ def test_a_corner_is_cut_only_as_far_as_there_is_room(room_m: float, cut_m: floa
     assert farthest < cut_m
 
 
+CORNERS = [[(0, 0), (5, 0), (5, 5)], [(0, 0), (0, 0), (5, 0), (5, 5), (5, 5)], [(0, 0), (5, 5)], [(0, 0), (0.2, 0)], [(3, 1)]]
+
+
+@pytest.mark.parametrize("corners", CORNERS)
+def test_a_path_of_which_only_the_corners_are_given_is_followed_like_any_other(corners: list[tuple[float, float]]) -> None:
+    path = following(np.array(corners, dtype=float))
+    x, y = map(float, corners[0])
+    for tick in range(400):
+        target = path.step((x, y, 0.0), 0.1 * tick)
+        away = math.dist((x, y), target)
+        if away > 0.0:
+            x, y = x + min(0.05, away) * (target[0] - x) / away, y + min(0.05, away) * (target[1] - y) / away
+        if math.dist((x, y), path.end) < 0.02:
+            break
+    assert math.dist((x, y), corners[-1]) < 0.1 and path.left_m < 0.3 and path.stuck_s(0.1 * tick) < 2.0
+
+
+@pytest.mark.parametrize("turn_deg", [30, 90, 120, 150, 170, 180])
+@pytest.mark.parametrize("ahead_m", [1.0, 2.5])
+def test_who_is_content_near_each_point_passes_every_sharp_corner(turn_deg: float, ahead_m: float) -> None:
+    back = 3.0 * np.array((math.cos(math.radians(turn_deg)), math.sin(math.radians(turn_deg))))
+    path = following(np.array([(0.0, 0.0), (4.0, 0.0), (4.0 + back[0], back[1])]), ahead_m=ahead_m)
+    x, y, farthest = 0.0, 0.0, 0.0
+    for tick in range(600):
+        target = path.step((x, y, 0.0), 0.1 * tick)
+        away = math.dist((x, y), target)
+        if away > (0.05 if target == path.end else 0.3):
+            x, y = x + 0.03 * (target[0] - x) / away, y + 0.03 * (target[1] - y) / away
+        farthest = max(farthest, x)
+    assert math.dist((x, y), path.end) < 0.1
+    assert farthest > 3.4
+
+
 def test_a_path_that_comes_back_by_the_same_way_is_followed_to_its_turn_first() -> None:
     path = following(BACK)
     x, reached = 0.0, 0.0
