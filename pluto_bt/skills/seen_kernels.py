@@ -21,7 +21,8 @@ LEVEL, LOW = 0, 1
 X, Y = range(2)
 NEVER = -1e18
 BEAM_SLACK_M = 0.05  # a beam that ends so little beyond a point does not prove that the point is gone: three sigma of an LMS200 and more
-BESIDE_M = 0.015  # nor does one that passes farther beside it, along a wall
+BESIDE_M = 0.015  # nor does one that passes farther beside it …
+ALONG = 4  # … or as close by so many: it runs along the face of a wall
 CONE_SLACK_M = 0.12  # the same for an echo
 FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
 TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
@@ -61,6 +62,7 @@ def see_beams(
     n = ranges_m.shape[0]
     flat_seen, flat_level = seen.reshape(-1), stamps[LEVEL].reshape(-1)
     places = np.zeros(max(0, int(most_m / (0.7 * CELL_M))) + 1, dtype=np.int32)
+    passed = places.copy()
     for i in range(0, n, 2):
         right_m, left_m = ranges_m[max(i - 1, 0)], ranges_m[min(i + 1, n - 1)]
         if not (ranges_m[i] > 0.0 and right_m > 0.0 and left_m > 0.0):  # also NaN
@@ -72,6 +74,7 @@ def see_beams(
         count = int(free_m / (0.7 * CELL_M)) + 1
         c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
         cells_along(places[:count], x_m, y_m, c, s, free_m, corner_x_m, corner_y_m, seen.shape[0], seen.shape[1])
+        met = 0
         for k in range(count):
             if places[k] < 0:
                 break
@@ -81,8 +84,11 @@ def see_beams(
                 row, column = places[k] // seen.shape[1], places[k] % seen.shape[1]
                 dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
                 away_m = math.hypot(dx, dy)
-                if away_m < free_m and abs(c * dy - s * dx) < max(BESIDE_M, 2.0 * away_m * step_rad):
-                    flat_level[places[k]] = NEVER
+                is_close = away_m < free_m and abs(c * dy - s * dx) < max(BESIDE_M, 2.0 * away_m * step_rad)
+                if is_close and (met == 0 or passed[met - 1] != places[k]):
+                    passed[met], met = places[k], met + 1
+        for k in range(met if met < ALONG else 0):
+            flat_level[passed[k]] = NEVER
     for i in range(n):
         range_m = ranges_m[i]
         if range_m > 0.0 and range_m < most_m and believed[i] != 0.0:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from pluto_bt.skills.outline import Array, outline_of
 from pluto_bt.skills.seen_kernels import (
+    ALONG,
     ANYHOW,
     BEAM_SLACK_M,
     BESIDE_M,
@@ -97,6 +98,7 @@ def plain_beams(to: Cells, x: float, y: float, first_rad: float, step_rad: float
             continue
         free_m = min(min(beside) - BEAM_SLACK_M, MOST_M)
         c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
+        passed: list[tuple[int, int]] = []
         for k in range(int(free_m / STEP_M) + 1 if free_m >= 0.0 else 0):
             at = cell_at(x + c * min(STEP_M * k, free_m), y + s * min(STEP_M * k, free_m))
             if at is None:
@@ -105,7 +107,9 @@ def plain_beams(to: Cells, x: float, y: float, first_rad: float, step_rad: float
             spot = to.spots[LEVEL][at]
             away_m, aside_m = math.hypot(spot[0] - x, spot[1] - y), abs(c * (spot[1] - y) - s * (spot[0] - x))
             if NEVER < to.stamps[LEVEL][at] < NOW_S and away_m < free_m and aside_m < max(BESIDE_M, 2.0 * away_m * step_rad):
-                to.stamps[LEVEL][at] = NEVER
+                passed.append(at)
+        for at in passed if len(set(passed)) < ALONG else ():
+            to.stamps[LEVEL][at] = NEVER
     for i in np.flatnonzero((ranges > 0.0) & (ranges < MOST_M) & (believed != 0.0)).tolist():
         angle = first_rad + i * step_rad
         put(to, LEVEL, x + ranges[i] * math.cos(angle), y + ranges[i] * math.sin(angle), x, y, NOW_S)
