@@ -138,6 +138,16 @@ def test_the_end_of_a_wall_seen_at_a_flat_angle_is_nobody(bearing: float, away_m
     assert not watch.is_anybody_about(now_s)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_face_of_a_wall_that_the_laser_saw_on_edge_before_is_nobody(seed: int) -> None:
+    """The robot drives across the line of a wall, whose end shows nothing of it; then all of it comes into view."""
+    wall, noise, watch = Shape("wall", "wall", np.array([(0.0, 1.0), (0.0, 2.2)])), np.random.default_rng(seed), WalkerWatch(30.0)
+    for k in range(12):
+        laser = (-0.5 + 0.1 * k + float(noise.normal(0.0, 0.003)), 0.0, 0.5 * math.pi)
+        watch.take_scan(scan_of((HALL, wall), laser, SCAN_S * k, noise), laser, np.ones(len(ANGLES)))
+        assert not len(watch.rows(SCAN_S * k))
+
+
 @settings(max_examples=20, deadline=None)
 @given(st.floats(0.3, 0.6), st.floats(0.25, 0.6), st.floats(0.3, 0.6), st.floats(-0.3, 0.3), st.sampled_from((1.0, -1.0)), st.integers(0, 1000))
 def test_the_back_of_a_round_thing_that_comes_into_view_as_we_pass_is_nobody(
