@@ -8,7 +8,7 @@ import numpy as np
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.seen_kernels import CAME, HIDDEN, SUDDEN, Counts
+from pluto_bt.skills.seen_kernels import CAME, HIDDEN, SUDDEN, UNKNOWN, Counts
 from pluto_bt.skills.sonar import Mask, SonarRing
 
 ROUNDS = 4
@@ -68,7 +68,9 @@ class Approach:
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
         swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
         stays = heard_m[-1] * swept_rad < SWEPT_M  # where a cone ends while the robot turns fast is not known well enough to say what was free
-        is_small = (news != 0) & (news != HIDDEN) & (not self._is_alone)
+        is_small = (news >= UNKNOWN) & (news != HIDDEN) & (not self._is_alone)
+        if not self._is_alone and math.dist(places[0, :2], places[-1, :2]) > STANDING_M:
+            near = near & (news != 0)  # who comes up to a robot that drives is seen himself; the laser knows a slanting face better than a cone
         moved = walked(heard_m, places, axes, near, is_small & stays, is_small & (news == SUDDEN), half_rad)
         moved[(news == CAME) & (stays | is_small)] = WALKS
         which = np.flatnonzero(moved)

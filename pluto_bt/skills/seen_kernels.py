@@ -29,7 +29,7 @@ TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
 TWICE_S = 0.25  # a round of the ring ago, and in between none may be missing but one
 SUDDEN_M = 1.0  # who is heard so near where nothing was known may be on his way
-UNKNOWN, CAME, SUDDEN, HIDDEN = 1, 2, 3, 4
+UNSEEN, UNKNOWN, CAME, SUDDEN, HIDDEN = 1, 2, 3, 4, 5
 ANYHOW, INSIDE = 0, 1  # layers of `heard`
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
@@ -157,8 +157,8 @@ def hear_cones(
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
         news: (k,) is filled: UNKNOWN, the laser saw nothing that explains an echo, where all was seen free once; CAME, also its whole arc was
-            heard free a moment ago, so what is there now walks; SUDDEN, it is near and new; HIDDEN, the same, but where it is nobody ever
-            looked, so it may always have stood there.
+            heard free a moment ago, so what is there now walks; SUDDEN, it is near and new; UNSEEN and, if it is near and new, HIDDEN: nobody ever
+            looked where it is, so it may always have stood there.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
@@ -206,7 +206,7 @@ def hear_cones(
             if on_arc > 0 and was_free == on_arc:
                 news[k] = CAME
             elif was_seen < on_arc:
-                news[k] = HIDDEN if news[k] == SUDDEN else 0
+                news[k] = HIDDEN if news[k] == SUDDEN else UNSEEN
     return touching
 
 

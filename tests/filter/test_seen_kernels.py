@@ -31,6 +31,7 @@ from pluto_bt.skills.seen_kernels import (
     TOUCHING_M,
     TWICE_S,
     UNKNOWN,
+    UNSEEN,
     hear_cones,
     see_beams,
     stand,
@@ -229,7 +230,7 @@ def plain_arc(to: Cells, cone: Array, opening: float) -> int:
     if freed and all(is_lately for is_lately, _ in freed):
         return CAME
     if not all(ever for _, ever in freed):
-        return HIDDEN if is_near else 0
+        return HIDDEN if is_near else UNSEEN
     return SUDDEN if is_near else UNKNOWN
 
 

@@ -14,7 +14,7 @@ from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.approach import PERHAPS, SURELY, WALKS, Approach
 from pluto_bt.skills.outline import Planar, outline_of
-from pluto_bt.skills.seen_kernels import CAME, SUDDEN, UNKNOWN
+from pluto_bt.skills.seen_kernels import CAME, SUDDEN, UNKNOWN, UNSEEN
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.stop_path import DRIFT_X, DRIFT_Y, GROWTH_MPS, IN_VIEW, SPREAD_M
 from pluto_bt.skills.walkers import WalkerWatch
@@ -201,9 +201,11 @@ def test_the_ring_hears_somebody_come_from_all_sides_while_the_robot_stands(bear
     assert how == SURELY, "nothing but somebody explains that to who stands"
 
 
-def test_it_hears_somebody_come_from_ahead_while_the_robot_drives() -> None:
-    said = heard("atrv2", [(0.05 * k, 0.0, 0.0) for k in range(10)], [(HALL, post(3.2 - 0.1 * k, 0.0)) for k in range(10)])
-    assert any(len(found) for found in said)
+@pytest.mark.parametrize(("is_alone", "news", "is_told"), [(True, 0, True), (False, UNKNOWN, True), (False, UNSEEN, True), (False, 0, False)])
+def test_it_hears_somebody_come_from_ahead_while_the_robot_drives(is_alone: bool, news: int, is_told: bool) -> None:
+    """Unless a laser explains the echo: it sees who comes, and how a face slants that a cone grazes."""
+    way, shapes = [(0.05 * k, 0.0, 0.0) for k in range(10)], [(HALL, post(3.2 - 0.1 * k, 0.0)) for k in range(10)]
+    assert any(len(found) for found in heard("atrv2", way, shapes, is_alone, NOT_NEW["atrv2"] + news)) == is_told
 
 
 @pytest.mark.parametrize("name", ["atrv2", "pioneer"])
