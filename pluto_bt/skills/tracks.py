@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Final
 
 from pluto_bt.skills.pieces import Piece
