@@ -201,13 +201,14 @@ def came_closer(
         x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
         beam_last[k] = (np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad
         range_last[k] = np.sqrt(x_last * x_last + y_last * y_last)
-        j, beside = int(np.round(beam_last[k])), max(BESIDE_BEAMS, int(np.ceil(BESIDE_M / max(range_last[k], 0.1) / angle_step_rad)))
-        if j < BESIDE_BEAMS or j >= before.shape[0] - BESIDE_BEAMS:
+        j, seen_m = int(np.round(beam_last[k])), range_last[k] + CAME_CLOSER_M
+        if j < BESIDE_BEAMS or j >= before.shape[0] - BESIDE_BEAMS or not before[j] > seen_m:
             continue
+        beside = max(BESIDE_BEAMS, int(np.ceil(BESIDE_M / max(range_last[k], 0.1) / angle_step_rad)))
         free_m = before[max(j - beside, 0) : j + beside + 1].min()
         free_m = min(free_m, beyond_m(before[j], before[j + 1]), beyond_m(before[j], before[j - 1]))
         free_m = min(free_m, beyond_m(before[j + 1], before[j + 2]), beyond_m(before[j - 1], before[j - 2]))
-        moved[k] = free_m > range_last[k] + CAME_CLOSER_M
+        moved[k] = free_m > seen_m
     leave_out_needles(moved, beam_last, range_last, angle_step_rad)
     return moved
 
