@@ -8,7 +8,7 @@ import numpy as np
 
 from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills.outline import Array, Planar
-from pluto_bt.skills.seen_kernels import CAME, SUDDEN, Counts
+from pluto_bt.skills.seen_kernels import CAME, HIDDEN, SUDDEN, UNKNOWN, Counts
 from pluto_bt.skills.sonar import Mask, SonarRing
 
 ROUNDS = 4
@@ -16,11 +16,13 @@ PERHAPS, WALKS, SURELY = 1, 2, 3  # how well it is known that an echo is somebod
 HEAR_M = 3.0
 NEARER_M = 0.12  # over the rounds: four sigma of a difference of two echoes, and 0.4 m/s
 EVENLY = 0.6  # of the whole, at most, in one round: what comes into a cone from its side comes in one leap, as a post does beside which we drive
+SUDDENLY_M = 0.06  # who is near all of a sudden has come by so much, two sigma; what was as near before is a post of which the laser saw another side
 LEAST_EVENLY = 0.75  # the same for what is no wall: it comes in one leap, and then it stands
 SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands across the way
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
 TURNING_M = 0.06
+STILL_M = 0.002  # what leaps has come by itself only if the robot truly stands: the least turn brings a post into the edge of a cone
 SWEPT_M = 0.2  # in three rounds: a turning cone is a sixth of that from where it is thought, which is less than what INSIDE leaves out
 GRAZING = 8.0  # a wall that a cone's edge grazes comes nearer by so much more than the end of the cone sweeps: at seven degrees
 FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
@@ -66,9 +68,10 @@ class Approach:
         axes, half_rad = self._ring.axes, self._ring.half_cone_rad
         swept_rad = abs(math.remainder(places[-1, 2] - places[0, 2], math.tau))
         stays = heard_m[-1] * swept_rad < SWEPT_M  # where a cone ends while the robot turns fast is not known well enough to say what was free
-        is_small = (news != 0) & (not self._is_alone)
-        moved = walked(heard_m, places, axes, near, is_small & stays, half_rad)
-        moved[is_small & (news == SUDDEN) & (moved == 0)] = PERHAPS
+        is_small = (news >= UNKNOWN) & (news != HIDDEN) & (not self._is_alone)
+        if not self._is_alone and math.dist(places[0, :2], places[-1, :2]) > STANDING_M:
+            near = near & (news != 0)  # who comes up to a robot that drives is seen himself; the laser knows a slanting face better than a cone
+        moved = walked(heard_m, places, axes, near, is_small & stays, is_small & (news == SUDDEN), half_rad)
         moved[(news == CAME) & (stays | is_small)] = WALKS
         which = np.flatnonzero(moved)
         if not len(which):
@@ -109,19 +112,20 @@ def heard_anew(
 
 
 @kernel
-def walked(heard_m: Array, places: Array, axes: Array, near: Mask, is_small: Mask, half_cone_rad: float) -> Counts:
-    """(k,) which of the `near` transducers hear something come or go that the robot's own motion does not explain: WALKS, PERHAPS or 0.
+def walked(heard_m: Array, places: Array, axes: Array, near: Mask, is_small: Mask, is_sudden: Mask, half_cone_rad: float) -> Counts:
+    """(k,) which of the transducers hear something come or go that the robot's own motion does not explain: WALKS, PERHAPS or 0.
 
     Args:
         heard_m: (rounds, k). places: (rounds, 3) of the robot. axes: (k, 3) of the transducers, robot frame.
-        is_small: (k,) whose echo no wall explains that a laser saw; if it is from none, it is from somebody PERHAPS.
+        near: (k,) whose echo has changed. is_small: (k,) whose echo no wall explains that a laser saw; if it is from none, it is from somebody
+            PERHAPS. is_sudden: (k,) also near and new.
     """
     found = np.zeros(heard_m.shape[1], dtype=np.intp)
     for k in range(found.shape[0]):
-        if near[k] and moves(heard_m, places, axes, k, False, half_cone_rad):
-            found[k] = WALKS
-        elif near[k] and is_small[k] and moves(heard_m, places, axes, k, True, half_cone_rad):
-            found[k] = PERHAPS
+        walks = near[k] and moves(heard_m, places, axes, k, False, half_cone_rad)
+        comes = near[k] and is_small[k] and moves(heard_m, places, axes, k, True, half_cone_rad)
+        is_there = is_sudden[k] and leaps(heard_m, places, axes, k, half_cone_rad)
+        found[k] = WALKS if walks else PERHAPS if comes or is_there else 0
     return found
 
 
@@ -141,10 +145,20 @@ def moves(heard_m: Array, places: Array, axes: Array, k: int, is_small: bool, ha
     sweeps_m = min(last_m, HEAR_M) * abs(places[rounds - 1, 2] - places[0, 2])
     least_m = NEARER_M + GRAZING * sweeps_m
     gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
-    if moved_m + sweeps_m < STANDING_M and gap_m > least_m:
+    if moved_m + sweeps_m < STILL_M and gap_m > least_m:
         return True
     is_even = total_m > least_m and most_m < EVENLY * total_m
     return bool(is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M)
+
+
+@inline_kernel
+def leaps(heard_m: Array, places: Array, axes: Array, k: int, half_cone_rad: float) -> bool:
+    """Whether what transducer `k` hears is nearer than in any of the rounds before by more than the robot's own motion since explains."""
+    come_m, most_m = 0.0, 0.0
+    for r in range(heard_m.shape[0] - 1, 0, -1):
+        come_m += heard_m[r - 1, k] - heard_m[r, k] - own_m(places, axes, r, k, True, half_cone_rad)[1]
+        most_m = max(most_m, come_m)
+    return bool(most_m > SUDDENLY_M)
 
 
 @inline_kernel
@@ -168,4 +182,5 @@ NOTHING: Array = np.zeros((0, 4))
 
 def warm() -> None:
     """Use the kernel once, so that who comes near first is not met while it is compiled."""
-    walked(np.zeros((ROUNDS, 1)), np.zeros((ROUNDS, 3)), np.zeros((1, 3)), np.zeros(1, dtype=np.bool_), np.zeros(1, dtype=np.bool_), 0.1)
+    nobody = np.zeros(1, dtype=np.bool_)
+    walked(np.zeros((ROUNDS, 1)), np.zeros((ROUNDS, 3)), np.zeros((1, 3)), nobody, nobody, nobody, 0.1)

@@ -64,7 +64,7 @@ class Follow:
         self._tracks.see(pieces, stamp_s, self.target)
         if self.target is None:
             self._choose(robot, stamp_s)
-        elif stamp_s - self.target.seen_s >= 0.5 * FORETELL_S:
+        elif stamp_s - self.target.seen_s >= self.target.foretold_s - 0.5 * FORETELL_S:
             self.target = self._found_again(self.target, stamp_s)
 
     def state(self, now_s: float) -> Search:
@@ -72,7 +72,7 @@ class Follow:
         if self.target is None:
             return Search.LOOKING if now_s - self._start_s < SEARCH_S else Search.NOBODY
         hidden_s = now_s - self.target.seen_s
-        return Search.SEEN if hidden_s < FORETELL_S else Search.HIDDEN if hidden_s < LOST_S else Search.LOST
+        return Search.SEEN if hidden_s < self.target.foretold_s else Search.HIDDEN if hidden_s < LOST_S else Search.LOST
 
     def pause(self, gap_s: float) -> None:
         """Time in which nobody looked does not count."""
@@ -119,6 +119,8 @@ class Follow:
         fresh = [track for track in self._tracks.all if track.seen_s == now_s and track.born_s >= target.seen_s and track is not target]
         near = [track for track in fresh if math.hypot(track.x_m - target.x_m, track.y_m - target.y_m) < gate_m]
         found = [track for track in near if track.moves]
+        if target.met_s > target.seen_s and hidden_s < GOES_ON_S:  # who comes out on another way is the one whom it met
+            found = [track for track in found if track.vx_mps * target.vx_mps + track.vy_mps * target.vy_mps > 0.0]
         if not found and hidden_s >= STOPPED_S:
             there = target.at(now_s)
             stand = [track for track in near if math.dist((track.x_m, track.y_m), there) < THERE_M]

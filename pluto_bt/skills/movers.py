@@ -14,7 +14,9 @@ from pluto_bt.skills.outline import Array, Planar
 Mask = NDArray[np.bool_]
 Beams = NDArray[np.intp]
 CAME_CLOSER_M = 0.12  # a beam so much shorter than the scan before allows ends on something that moved there
-NEEDLE_BEAMS = 0.7
+NEEDLE_BEAMS = 0.7  # what is narrower in the scan before may have stood between two of its beams, …
+THIN_M, DEEP_M = 0.08, 0.3  # … or have been seen on edge: so thin, as far as noise lets tell, and deeper than a person is
+BESIDE_M, BESIDE_BEAMS = 0.05, 2  # where a point lay is known so well, or to so many beams: what passed it nearer by does not say that it was free
 GRAZING_M = 1.5  # neighbouring beams that differ by less may graze one wall, which goes on beyond its end by as much till the next beam
 APART_M = 0.3  # neighbouring beams that differ more end on different things
 WIDEST_M = 1.2  # what is wider is no person and no vehicle of our size, and its visible part shifts as we pass
@@ -176,16 +178,17 @@ def _velocity(centre: Array, before: Array, dt_s: float) -> Array:
 def came_closer(
     ranges: Array, near: Mask, before: Array, laser: Planar, last: Planar, angle_min_rad: float, angle_step_rad: float, count: int
 ) -> Mask:
-    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in five beams side by side.
+    """For each of the `count` near beams, whether its end lies in what the scan before saw as free space, in all beams that passed close by.
 
-    What is grazed is not seen up to its end, which may lie anywhere before the next beam: so far it is thought to go on. And what lay between
-    two beams of the scan before, as a thin wall in line with the laser, may have stood there unseen.
+    So the back of a round thing that comes into view as we pass by did not come. What is grazed is not seen up to its end, which may lie
+    anywhere before the next beam: so far it is thought to go on. And what lay between two beams of the scan before, as a thin wall in line with
+    the laser, may have stood there unseen.
 
     Args:
         ranges, before: (n,) this scan and the one before, of equal angles; NaN in `before` says nothing.
         laser, last: where they were taken from, in one frame.
     """
-    moved, beam_last = np.zeros(count, dtype=np.bool_), np.zeros(count)
+    moved, beam_last, range_last = np.zeros(count, dtype=np.bool_), np.zeros(count), np.zeros(count)
     c_now, s_now, c_last, s_last = np.cos(laser[2]), np.sin(laser[2]), np.cos(last[2]), np.sin(last[2])
     k = -1
     for i in range(ranges.shape[0]):
@@ -197,27 +200,35 @@ def came_closer(
         dx, dy = laser[0] + c_now * x - s_now * y - last[0], laser[1] + s_now * x + c_now * y - last[1]
         x_last, y_last = c_last * dx + s_last * dy, c_last * dy - s_last * dx
         beam_last[k] = (np.arctan2(y_last, x_last) - angle_min_rad) / angle_step_rad
-        j = int(np.round(beam_last[k]))
-        if j < 2 or j > before.shape[0] - 3:
+        range_last[k] = np.sqrt(x_last * x_last + y_last * y_last)
+        j, seen_m = int(np.round(beam_last[k])), range_last[k] + CAME_CLOSER_M
+        if j < BESIDE_BEAMS or j >= before.shape[0] - BESIDE_BEAMS or not before[j] > seen_m:
             continue
-        free_m = min(before[j - 2], before[j - 1], before[j], before[j + 1], before[j + 2])
+        beside = max(BESIDE_BEAMS, int(np.ceil(BESIDE_M / max(range_last[k], 0.1) / angle_step_rad)))
+        free_m = before[max(j - beside, 0) : j + beside + 1].min()
         free_m = min(free_m, beyond_m(before[j], before[j + 1]), beyond_m(before[j], before[j - 1]))
         free_m = min(free_m, beyond_m(before[j + 1], before[j + 2]), beyond_m(before[j - 1], before[j - 2]))
-        moved[k] = free_m > np.sqrt(x_last * x_last + y_last * y_last) + CAME_CLOSER_M
-    leave_out_needles(moved, beam_last)
+        moved[k] = free_m > seen_m
+    leave_out_needles(moved, beam_last, range_last, angle_step_rad)
     return moved
 
 
 @inline_kernel
-def leave_out_needles(moved: Mask, beam_last: Array) -> None:
-    """Take back those side by side that all lay between two beams of the scan before; `beam_last` are their numbers there."""
+def leave_out_needles(moved: Mask, beam_last: Array, range_last: Array, angle_step_rad: float) -> None:
+    """Take back those side by side that all lay between two beams of the scan before, or on a face that it saw on edge.
+
+    Args:
+        beam_last, range_last: (k,) their numbers there, and how far they lay from the laser, m.
+    """
     first = 0
     for k in range(moved.shape[0]):
         if not moved[k]:
             first = k + 1
         elif k == moved.shape[0] - 1 or not moved[k + 1]:
-            beams = beam_last[first : k + 1]
-            if beams.max() - beams.min() < NEEDLE_BEAMS:
+            beams, away_m = beam_last[first : k + 1], range_last[first : k + 1]
+            width = beams.max() - beams.min()
+            is_thin = width * angle_step_rad * away_m.mean() < THIN_M and away_m.max() - away_m.min() > DEEP_M
+            if width < NEEDLE_BEAMS or is_thin:
                 moved[first : k + 1] = False
 
 

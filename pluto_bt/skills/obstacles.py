@@ -14,11 +14,13 @@ from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.lone_beams import believed_ends
 from pluto_bt.skills.movers import Mask, Movers, came_closer
-from pluto_bt.skills.outline import Array, Planar
+from pluto_bt.skills.outline import Array, Outline, Planar
+from pluto_bt.skills.seen_kernels import outside_m
 
 X, Y, MARGIN, SINCE, VX, VY = range(6)  # columns of the memory
 FIELD_EDGE_RAD = math.radians(1.0)  # memory this near the edge of the field of view is kept: the edge beam may just miss it
 HEARD_THROUGH_M = 0.4  # an echo so much farther says that nothing is where one was before
+INSIDE_M = -0.02  # what stood deeper inside the outline than this is not there any more: the robot is
 APEX_M = 0.06  # an echo from nearer than the ring can tell was put so near to its transducer
 FORETELL_S = 1.0  # what moves is thought to go on for so long after it was seen
 
@@ -29,8 +31,9 @@ class Obstacles:
     Attributes: `first_echo`: from this number on, the points given last by `around` were heard and not seen.
     """
 
-    def __init__(self, parameters: AvoidParameters) -> None:
+    def __init__(self, parameters: AvoidParameters, outline: Outline) -> None:
         self.parameters = parameters
+        self._planes = outline.planes
         self.reach_m = parameters.reach_m
         self._fan = Fan()
         self.forget()
@@ -91,6 +94,8 @@ class Obstacles:
     def around(self, robot: Planar, with_laser: bool, with_sonar: bool, now_s: float, beyond_m: float = 0.0) -> Array:
         """(n, 5) x, y, margin, velocity x, y in the robot frame, of all that is remembered nearer than the reach and `beyond_m`."""
         reach_m = self.reach_m + beyond_m
+        if len(self._kept):
+            self._kept = _outside_the_robot(self._kept, self._planes, robot[0], robot[1], robot[2], self.parameters.margin_m)
         seen = np.concatenate((self._seen, self._kept)) if with_laser else self._echoes[:0]
         points = _seen_from(seen, robot[0], robot[1], robot[2], now_s, reach_m)
         self.first_echo = len(points)
@@ -146,6 +151,20 @@ def _outside_the_field(
 
 
 @kernel
+def _outside_the_robot(points: Array, planes: Array, x_m: float, y_m: float, theta_rad: float, standing_margin_m: float) -> Array:
+    """The points (rows of the memory) without those that stand where the robot is now: somebody who walked past its flank left them there.
+
+    Who walks is let out first: he may be half under the outline.
+    """
+    kept = np.zeros(points.shape[0], dtype=np.bool_)
+    c, s = math.cos(theta_rad), math.sin(theta_rad)
+    for i in range(points.shape[0]):
+        dx, dy = points[i, 0] - x_m, points[i, 1] - y_m
+        kept[i] = points[i, 2] != standing_margin_m or outside_m(planes, c * dx + s * dy, c * dy - s * dx) > INSIDE_M
+    return points[kept]
+
+
+@kernel
 def _heard_through(
     points: Array, axes: Array, ranges_m: Array, half_cone_rad: float, x_m: float, y_m: float, theta_rad: float
 ) -> NDArray[np.bool_]:
@@ -186,4 +205,5 @@ def warm() -> None:
     movers.warm()
     here = (0.0, 0.0, 0.0)
     _outside_the_field(np.zeros((1, 6)), here, (0.0, 0.0), here, 1.0)
+    _outside_the_robot(np.zeros((1, 6)), np.zeros((1, 3)), *here, 0.0)
     _heard_through(np.zeros((1, 6)), np.zeros((1, 3)), np.zeros(1), 0.1, *here)

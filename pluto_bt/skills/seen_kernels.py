@@ -21,13 +21,15 @@ LEVEL, LOW = 0, 1
 X, Y = range(2)
 NEVER = -1e18
 BEAM_SLACK_M = 0.05  # a beam that ends so little beyond a point does not prove that the point is gone: three sigma of an LMS200 and more
+BESIDE_M = 0.015  # nor does one that passes farther beside it …
+ALONG = 4  # … or as close by so many: it runs along the face of a wall
 CONE_SLACK_M = 0.12  # the same for an echo
 FRESH_S = 1.0  # what the laser saw so short a time ago, the sonar does not take away
 TOUCHING_M = -1.0  # in place of an echo: something may touch the transducer
 LATELY_S = 1.0
 TWICE_S = 0.25  # a round of the ring ago, and in between none may be missing but one
 SUDDEN_M = 1.0  # who is heard so near where nothing was known may be on his way
-UNKNOWN, CAME, SUDDEN = 1, 2, 3
+UNSEEN, UNKNOWN, CAME, SUDDEN, HIDDEN = 1, 2, 3, 4, 5
 ANYHOW, INSIDE = 0, 1  # layers of `heard`
 INSIDE_M = -0.03  # points so deep inside the outline are not there: the robot is
 
@@ -60,6 +62,7 @@ def see_beams(
     n = ranges_m.shape[0]
     flat_seen, flat_level = seen.reshape(-1), stamps[LEVEL].reshape(-1)
     places = np.zeros(max(0, int(most_m / (0.7 * CELL_M))) + 1, dtype=np.int32)
+    passed = places.copy()
     for i in range(0, n, 2):
         right_m, left_m = ranges_m[max(i - 1, 0)], ranges_m[min(i + 1, n - 1)]
         if not (ranges_m[i] > 0.0 and right_m > 0.0 and left_m > 0.0):  # also NaN
@@ -71,6 +74,7 @@ def see_beams(
         count = int(free_m / (0.7 * CELL_M)) + 1
         c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
         cells_along(places[:count], x_m, y_m, c, s, free_m, corner_x_m, corner_y_m, seen.shape[0], seen.shape[1])
+        met = 0
         for k in range(count):
             if places[k] < 0:
                 break
@@ -78,8 +82,13 @@ def see_beams(
             level_s = flat_level[places[k]]
             if level_s > NEVER and level_s < stamp_s:
                 row, column = places[k] // seen.shape[1], places[k] % seen.shape[1]
-                if math.hypot(spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m) < free_m:
-                    flat_level[places[k]] = NEVER
+                dx, dy = spots[LEVEL, row, column, X] - x_m, spots[LEVEL, row, column, Y] - y_m
+                away_m = math.hypot(dx, dy)
+                is_close = away_m < free_m and abs(c * dy - s * dx) < max(BESIDE_M, 2.0 * away_m * step_rad)
+                if is_close and (met == 0 or passed[met - 1] != places[k]):
+                    passed[met], met = places[k], met + 1
+        for k in range(met if met < ALONG else 0):
+            flat_level[passed[k]] = NEVER
     for i in range(n):
         range_m = ranges_m[i]
         if range_m > 0.0 and range_m < most_m and believed[i] != 0.0:
@@ -147,8 +156,9 @@ def hear_cones(
 
     Args:
         cones: (k, 6) x m, y m, theta rad, echo m (now; most_m and more = none), clear m (surely free so far), where the body ends m.
-        news: (k,) is filled: UNKNOWN, the laser saw nothing that explains an echo; CAME, also its whole arc was heard free a moment ago, so what
-            is there now walks; SUDDEN, it is near and new.
+        news: (k,) is filled: UNKNOWN, the laser saw nothing that explains an echo, where all was seen free once; CAME, also its whole arc was
+            heard free a moment ago, so what is there now walks; SUDDEN, it is near and new; UNSEEN and, if it is near and new, HIDDEN: nobody ever
+            looked where it is, so it may always have stood there.
     Within a cone everything nearer than its clear range is free. An echo that nothing known explains may have arisen anywhere on its arc:
     the part of the arc that no other cone of this round clears counts as an obstacle. An echo from nearer than a transducer can tell is not
     noted but marked in the cones: something touches the skin as long as it is heard; from farther away its place is known. What appears
@@ -171,7 +181,7 @@ def hear_cones(
             far_m = min(clear_m, most_m) if clears == 1 else max(echo_m, cones[k, 5]) + CELL_M
             column_0, column_1 = cells_of(x_m, c * far_m, abs(s) * far_m * opening, corner_x_m, seen.shape[1])
             row_0, row_1 = cells_of(y_m, s * far_m, abs(c) * far_m * opening, corner_y_m, seen.shape[0])
-            on_arc, was_free, near_m = 0, 0, max(0.0, far_m - 2.0 * CELL_M)
+            on_arc, was_free, was_seen, near_m = 0, 0, 0, max(0.0, far_m - 2.0 * CELL_M)
             for row in range(row_0, row_1):
                 dy = corner_y_m + (row + 0.5) * CELL_M - y_m
                 if clears == 1:
@@ -190,10 +200,13 @@ def hear_cones(
                     if abs(away_m - far_m + CELL_M) < 0.75 * CELL_M and seen[row, column] < stamp_s:
                         share = (far_m - CELL_M) / max(away_m, 1e-6)
                         on_arc, was_free = on_arc + 1, was_free + (heard[INSIDE, row, column] > stamp_s - LATELY_S)
+                        was_seen += seen[row, column] > NEVER
                         put_s = stamp_s - fleeting_s if heard[ANYHOW, row, column] > stamp_s - LATELY_S else stamp_s
                         put(stamps, spots, LOW, corner_x_m, corner_y_m, x_m + dx * share, y_m + dy * share, x_m, y_m, put_s)
             if on_arc > 0 and was_free == on_arc:
                 news[k] = CAME
+            elif was_seen < on_arc:
+                news[k] = HIDDEN if news[k] == SUDDEN else UNSEEN
     return touching
 
 
@@ -215,7 +228,7 @@ def clear_cells(
         is_well_in = is_in & is_sure & (aside_m < ahead_m * opening - CELL_M)  # what stands on the edge is heard now and then
         seen[k] = stamp_s if is_in else seen[k]
         low[k] = NEVER if is_in else low[k]
-        level[k] = NEVER if is_in & (level[k] < stamp_s - FRESH_S) else level[k]
+        level[k] = NEVER if is_well_in & (level[k] < stamp_s - FRESH_S) else level[k]
         anyhow[k] = stamp_s if is_in else anyhow[k]
         inside[k] = stamp_s if is_well_in else inside[k]
 

@@ -102,7 +102,7 @@ class SeenSpace:
 
         Args:
             axes: (k, 3) transducers in the robot frame. leaves_m: (k,) how far each one's axis runs inside the outline.
-        Returns: (k,) UNKNOWN, CAME, SUDDEN or 0: what is new about each echo.
+        Returns: (k,) UNSEEN, UNKNOWN, CAME, SUDDEN, HIDDEN or 0: what is new about each echo; see `hear_cones`.
         """
         if len(ranges_m) != self._rounds_m.shape[1]:
             self._rounds_m, self._cones = np.zeros((ROUNDS, len(ranges_m))), np.zeros((len(ranges_m), 6))

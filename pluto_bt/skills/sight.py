@@ -38,7 +38,7 @@ class Sight:
         self.parameters = parameters
         self.laser = devices.laser
         self.ring = SonarRing(devices.sonar, outline) if devices.sonar else None
-        self._obstacles = Obstacles(parameters)
+        self._obstacles = Obstacles(parameters, outline)
         self.forget()
 
     def tune(self, parameters: AvoidParameters) -> None:

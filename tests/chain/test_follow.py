@@ -109,6 +109,27 @@ def test_one_who_crosses_between_does_not_take_the_robot_with_him() -> None:
     assert distances[-1] < 1.8
 
 
+@pytest.mark.parametrize("pace_mps", [0.5, 0.8, 1.1])
+@pytest.mark.parametrize("behind_m", [0.2, 0.3])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_two_who_hang_together_in_the_scan_for_a_moment_are_not_mixed_up(pace_mps: float, behind_m: float, side: float) -> None:
+    """The crosser comes out from behind a post, and passes so near behind the guide that the laser shows one wide thing; then he alone is seen."""
+    follow, meet_s = Follow(1.5, 0.8, 0.0), 6.0
+    for k in range(75):
+        now_s = 0.2 * k
+        guide = straight(now_s)
+        crosser = (straight(meet_s)[0] - behind_m, 0.3 + side * pace_mps * (meet_s - now_s))
+        apart_m, robot = math.dist(guide, crosser), (guide[0] - 2.0, 0.3, 0.0)
+        seen = [Piece(*guide, 0.45)] if now_s < meet_s and apart_m > 0.9 else [Piece(*guide, 0.45), Piece(*crosser, 0.45)]
+        if abs(crosser[1] - guide[1]) < 0.1:
+            seen = [Piece(*crosser, 0.45)]
+        elif apart_m < 0.75:
+            seen = [Piece(0.5 * (guide[0] + crosser[0]), 0.5 * (guide[1] + crosser[1]), 0.45 + 0.5 * apart_m)]
+        follow.see(seen, robot, now_s)
+    assert follow.state(now_s) is Search.SEEN
+    assert follow.target is not None and math.dist((follow.target.x_m, follow.target.y_m), guide) < 0.2
+
+
 def test_one_who_is_hidden_for_three_seconds_is_found_again() -> None:
     _, distances, state = play({"guide": lambda t: None if 8.0 <= t < 11.0 else straight(t)}, 30.0)
     assert state is Search.SEEN and distances[-1] < 1.8

@@ -11,19 +11,27 @@ from hypothesis import strategies as st
 
 from pluto_bt.skills.outline import Array, outline_of
 from pluto_bt.skills.seen_kernels import (
+    ALONG,
     ANYHOW,
     BEAM_SLACK_M,
+    BESIDE_M,
+    CAME,
     CELL_M,
     CONE_SLACK_M,
     FRESH_S,
+    HIDDEN,
     INSIDE,
     INSIDE_M,
     LATELY_S,
     LEVEL,
     LOW,
     NEVER,
+    SUDDEN,
+    SUDDEN_M,
     TOUCHING_M,
     TWICE_S,
+    UNKNOWN,
+    UNSEEN,
     hear_cones,
     see_beams,
     stand,
@@ -91,14 +99,18 @@ def plain_beams(to: Cells, x: float, y: float, first_rad: float, step_rad: float
             continue
         free_m = min(min(beside) - BEAM_SLACK_M, MOST_M)
         c, s = math.cos(first_rad + i * step_rad), math.sin(first_rad + i * step_rad)
+        passed: list[tuple[int, int]] = []
         for k in range(int(free_m / STEP_M) + 1 if free_m >= 0.0 else 0):
             at = cell_at(x + c * min(STEP_M * k, free_m), y + s * min(STEP_M * k, free_m))
             if at is None:
                 break
             to.seen[at] = NOW_S
             spot = to.spots[LEVEL][at]
-            if NEVER < to.stamps[LEVEL][at] < NOW_S and math.hypot(spot[0] - x, spot[1] - y) < free_m:
-                to.stamps[LEVEL][at] = NEVER
+            away_m, aside_m = math.hypot(spot[0] - x, spot[1] - y), abs(c * (spot[1] - y) - s * (spot[0] - x))
+            if NEVER < to.stamps[LEVEL][at] < NOW_S and away_m < free_m and aside_m < max(BESIDE_M, 2.0 * away_m * step_rad):
+                passed.append(at)
+        for at in passed if len(set(passed)) < ALONG else ():
+            to.stamps[LEVEL][at] = NEVER
     for i in np.flatnonzero((ranges > 0.0) & (ranges < MOST_M) & (believed != 0.0)).tolist():
         angle = first_rad + i * step_rad
         put(to, LEVEL, x + ranges[i] * math.cos(angle), y + ranges[i] * math.sin(angle), x, y, NOW_S)
@@ -195,11 +207,13 @@ def plain_clear(to: Cells, cone: Array, opening: float) -> None:
     is_sure = is_in & (to.heard[ANYHOW][at] > NOW_S - TWICE_S) & (aside < ahead * opening - CELL_M)
     to.seen[at][is_in], to.heard[ANYHOW][at][is_in], to.heard[INSIDE][at][is_sure] = NOW_S, NOW_S, NOW_S
     to.stamps[LOW][at][is_in] = NEVER
-    to.stamps[LEVEL][at][is_in & (to.stamps[LEVEL][at] < NOW_S - FRESH_S)] = NEVER
+    to.stamps[LEVEL][at][is_sure & (to.stamps[LEVEL][at] < NOW_S - FRESH_S)] = NEVER
 
 
-def plain_arc(to: Cells, cone: Array, opening: float) -> None:
-    """Where an echo may have arisen."""
+def plain_arc(to: Cells, cone: Array, opening: float) -> int:
+    """Where an echo may have arisen; what is new about it."""
+    is_near = cone[3] < SUDDEN_M and not is_explained(to, LOW, cone, opening)
+    freed = []  # of each cell, whether it was well inside a cone that was free lately, and whether it was ever seen
     x, y = middles()
     arc_m = max(cone[3], cone[5])
     rows, columns = square(cone, arc_m + CELL_M, opening)
@@ -210,8 +224,14 @@ def plain_arc(to: Cells, cone: Array, opening: float) -> None:
             ahead, aside, away = c * dx + s * dy, abs(c * dy - s * dx), math.sqrt(dx * dx + dy * dy)
             if ahead > 0.0 and aside <= ahead * opening and abs(away - arc_m) < 0.75 * CELL_M and to.seen[row, column] < NOW_S:
                 was_free = to.heard[ANYHOW, row, column] > NOW_S - LATELY_S
+                freed.append((to.heard[INSIDE, row, column] > NOW_S - LATELY_S, to.seen[row, column] > NEVER))
                 share = arc_m / max(away, 1e-6)
                 put(to, LOW, cone[0] + dx * share, cone[1] + dy * share, cone[0], cone[1], NOW_S - FLEETING_S if was_free else NOW_S)
+    if freed and all(is_lately for is_lately, _ in freed):
+        return CAME
+    if not all(ever for _, ever in freed):
+        return HIDDEN if is_near else UNSEEN
+    return SUDDEN if is_near else UNKNOWN
 
 
 @given(SEEDS, st.floats(0.08, 0.5))
@@ -227,13 +247,14 @@ def test_cones_free_and_fill_the_cells_that_they_do_one_by_one(seed: int, half_c
     touching = hear_cones(*kernel_s, *CORNER, heard, half_cone_rad, NOW_S, MOST_M, FLEETING_S, news)
     for cone in cones:
         plain_clear(plain, cone, opening)
-    touched = []
+    touched, expected = [], [0] * 9
     for k, cone in enumerate(cones):
         if cone[3] < MOST_M and not is_explained(plain, LEVEL, cone, opening):
             if cone[3] <= cone[5]:
                 touched.append(k)
             else:
-                plain_arc(plain, cone, opening)
+                expected[k] = plain_arc(plain, cone, opening)
+    assert news.tolist() == expected
     assert touching == len(touched) and np.flatnonzero(heard[:, 3] == TOUCHING_M).tolist() == touched
     assert np.array_equal(kernel_s.stamps > NEVER, plain.stamps > NEVER)
     assert np.array_equal(kernel_s.seen, plain.seen) and np.array_equal(kernel_s.heard, plain.heard)

@@ -11,8 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.maps.scene import Scene
+from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.outline import outline_of
-from pluto_bt.skills.seen_kernels import CAME, CELL_M, LEVEL, LOW, NEVER, SUDDEN, UNKNOWN
+from pluto_bt.skills.seen_kernels import CAME, CELL_M, HIDDEN, LEVEL, LOW, NEVER, SUDDEN, UNKNOWN
 from pluto_bt.skills.seen_space import SeenSpace
 from pluto_bt.skills.sonar import SonarRing
 from pluto_bt.skills.stop_path import CLEAR, MEETS, UNSEEN, WALKER, first_trouble, rim_of
@@ -120,15 +122,33 @@ def test_an_echo_that_the_laser_does_not_explain_is_an_obstacle_and_is_forgotten
     one.stand((0.0, 0.0, 0.0), 0.0, 9.0, 0.0, REACH_M)
     assert one.count == 0
 
+
 def test_an_echo_where_all_was_free_came_and_one_near_the_robot_is_sudden_till_it_is_known() -> None:
     one, near, far = space(), np.full(16, 5.0), np.full(16, 5.0)
     near[3] = near[4] = 0.6
     far[10:13] = 1.2
+    assert hear(one, near)[0][3] == HIDDEN, "nobody ever looked there"
+    hear(one, np.full(16, 5.0), since_s=6.0)
     assert hear(one, near)[0][3] == SUDDEN and hear(one, near, since_s=8.0)[2][3] == UNKNOWN
     for k, theta_rad in enumerate((-0.2, 0.2, 0.0)):
         hear(one, np.full(16, 5.0), 3, 8.7 + 0.3 * k, 0.1, theta_rad)
     assert CAME in hear(one, far, 1, 9.6, 0.1)[0][10:13]
     assert CAME not in hear(one, far, 1, 20.0, 0.1)[0][10:13], "what was free long ago may have been filled by anything"
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_end_of_a_wall_is_not_forgotten_as_the_laser_passes_through_its_line(seed: int) -> None:
+    """A robot in a doorway: beams run along the face of the wall, and end on it no more."""
+    one, noise = space(), np.random.default_rng(seed)
+    scene = Scene(World("door", shapes=(Shape("wall", "wall", np.array([(0.0, 0.7), (0.0, 3.0)])),)))
+    angles, ranges = np.radians(np.arange(361) / 2.0 - 90.0), np.zeros(361)
+    for k in range(20):
+        laser = (-1.5 + 0.08 * k + float(noise.uniform(0.0, 0.04)), 0.0, 0.0)
+        scene.scan(laser, 0.6, 0.0, angles, 80.0, ranges)
+        one.add_scan(scan(ranges + noise.normal(0.0, 0.01, 361), 1.0 + 0.2 * k), laser, 0.6, 0.0, NOBODY)
+    one.stand((0.0, 0.0, 0.0), 0.0, 5.0, 0.0, REACH_M)
+    left = one.points[: one.count][np.hypot(one.points[: one.count, 0], one.points[: one.count, 1] - 0.85) < 0.2]
+    assert len(left) >= 4
 
 
 def test_an_echo_of_what_the_laser_sees_adds_nothing() -> None:

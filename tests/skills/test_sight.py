@@ -55,3 +55,15 @@ def test_avoidance_that_looks_once_a_second_may_drive_the_stop_filter_is_stricte
         see(sight, 1.0 * k, 3.0 + rng.normal(0.0, 0.01, 181), 0.1 * k)
         assert sight.laser_fault(k + 0.3) == ALL_WELL
         assert sight.laser_fault(k + 0.9).reason == reasons.LASER_STALE
+
+
+@pytest.mark.parametrize(("y_m", "is_there"), [(0.0, True), (-0.4, False)])
+def test_what_left_the_field_of_view_is_not_where_the_robot_stands_now(y_m: float, is_there: bool) -> None:
+    """Somebody who walked past its flank left his outline there; or what was pushed away."""
+    sight = Sight(ATRV2, AvoidParameters(), outline_of(ATRV2.body.outline_m))
+    ranges_m = 5.0 + 0.1 * np.sin(np.arange(181) / 7.0)
+    ranges_m[:4] = 0.6
+    see(sight, 0.0, ranges_m, 0.0)
+    see(sight, 0.2, ranges_m + np.where(np.arange(181) < 4, 4.4, 0.1), 0.3)
+    points = sight.points((0.3, y_m, 0.0), True, False, 0.3)
+    assert bool((np.hypot(points[:, 0] + 0.3, points[:, 1] + 0.6 + y_m) < 0.1).any()) == is_there
