@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.skills import map_kernels
 from pluto_bt.skills.fan import Fan
 from pluto_bt.skills.grid_shift import shift
 from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, all_free, along_line, changes, clearances, mark_ground, mark_level, under_points
@@ -29,8 +30,9 @@ HERE_M = 1.0  # so near to where the robot has been nothing needs a visit, thoug
 class LocalMap:
     """The grid. `clearance` (cells) is kept up to date by `refresh`; `low_s` is when something low was seen, `NEVER_S` = never."""
 
-    def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0)) -> None:
-        self.parameters = parameters
+    def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0), fine: LocalMap | None = None) -> None:
+        """`fine`: the same things on smaller cells, refreshed before this one: a door is as wide there as it is, give or take a cell of that."""
+        self.parameters, self._fine = parameters, fine
         self.cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         self.look_m = min(parameters.look_m, 0.35 * CELLS * self.cell_m)
         self.far_cells = parameters.wide_half_width_m / self.cell_m
@@ -47,6 +49,8 @@ class LocalMap:
         self.low_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self._first_s: Floats = np.full((CELLS, CELLS), NEVER_S, dtype=np.float32)
         self.clearance: Floats = np.full((CELLS, CELLS), self.far_cells, dtype=np.float32)
+        self._blunt: Floats = self.clearance if self._fine is None else self.clearance.copy()  # as these cells alone have it
+        self._renewed: Window | None = None  # where that, or what a grid on larger cells makes of it, is newer than `clearance`
         self._touched: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)
         self._stands: Bytes = np.zeros((CELLS, CELLS), dtype=np.int8)  # 1 = what `clearance` was reckoned with
         self._scans = 0
@@ -59,6 +63,11 @@ class LocalMap:
     def lay(self, middle: Planar) -> None:
         """Put the middle of a grid in which nothing is known here."""
         self.i0, self.j0 = math.floor(middle[0] / self.cell_m) - CELLS // 2, math.floor(middle[1] / self.cell_m) - CELLS // 2
+
+    @property
+    def doubt_m(self) -> float:
+        """How much narrower than it is a narrow place may show: two halves of a cell of the fine grid. Without one nobody relies on narrow places."""
+        return 0.0 if self._fine is None else self._fine.cell_m
 
     # ------------------------------------------------------------------ places
 
@@ -203,13 +212,30 @@ class LocalMap:
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
         self.refreshed_s = now_s
+        self._reckon(now_s)
+        if self._fine is not None:
+            self._sharpen(self._fine)
+
+    def _sharpen(self, fine: LocalMap) -> None:
+        """Take over how wide a narrow place is on smaller cells, where those changed or ours did."""
+        ratio = self.cell_m / fine.cell_m
+        i, j = fine.place(self.i0 * self.cell_m, self.j0 * self.cell_m)  # of our first corner
+        window, self._renewed, theirs, fine._renewed = self._renewed, None, fine._renewed, None
+        if theirs is not None:
+            window = theirs.seen_from(i, j, ratio).joined(window)
+        if window is not None:
+            at = (ratio, i, j, CELLS_OF_A_PATH, *window.grown(0, CELLS))
+            map_kernels.sharpen(self._blunt, fine.clearance, fine.evidence, *at, self.clearance)
+
+    def _reckon(self, now_s: float) -> None:
         if self._window is None:
             return
         keep, oldest_s = math.ceil(self.far_cells), self._oldest_s(now_s)
         window, self._window = self._window.grown(2 * keep if self._has_low else 0, CELLS), None
         changed = Window(*changes(self.evidence, self.low_s, oldest_s, self._stands, *window))
         if changed.i0 < changed.i1:  # mostly a few cells, or none
-            clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self.clearance, keep, self.far_cells)
+            clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self._blunt, keep, self.far_cells)
+            self._renewed = changed.grown(keep, CELLS).joined(self._renewed)
 
     def without_walkers(self, places: Array, now_s: float) -> tuple[Bytes, Floats]:
         """Evidence and clearances as if nothing stood at and beside `places` (n, 2), where somebody walked."""
@@ -247,8 +273,11 @@ class LocalMap:
         if not (shift_i or shift_j):
             return
         for grid, blank in ((self.evidence, 0), (self.covered, 0), (self._touched, 0), (self.low_s, NEVER_S), (self._first_s, NEVER_S),
-                            (self._stands, 0), (self.clearance, self.far_cells)):  # fmt: skip
+                            (self._stands, 0), (self._blunt, self.far_cells)):  # fmt: skip
             shift(grid, shift_i, shift_j, blank)
+        if self._fine is not None:
+            shift(self.clearance, shift_i, shift_j, self.far_cells)
         self.i0, self.j0 = self.i0 + shift_i, self.j0 + shift_j
         self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
+        self._renewed = None if self._renewed is None else self._renewed.moved(shift_i, shift_j)
         self._visited = None
