@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import Final
 
 from pluto_bt.behaviours.arm import UnfoldArm
+from pluto_bt.behaviours.back_out import BackOut
 from pluto_bt.behaviours.car_goto import CarGoTo
+from pluto_bt.behaviours.circle_object import CircleObject
 from pluto_bt.behaviours.conditions import BatteryAbove, BumperPressed, InsideArea, IsAt, IsStuck, IsTilted, PoseQualityAbove
 from pluto_bt.behaviours.escape import ReadAlarms, TryTurn
+from pluto_bt.behaviours.find_object import FindObject
 from pluto_bt.behaviours.follow import Follow
 from pluto_bt.behaviours.follow_path import FollowPath
 from pluto_bt.behaviours.goto import GoTo
-from pluto_bt.behaviours.investigate import CircleObject, FindObject
 from pluto_bt.behaviours.jobs import Explore, Investigate, MoveTo, Resume, SetRectangle
 from pluto_bt.behaviours.leaf import Leaf
 from pluto_bt.behaviours.look_around import LookAround
@@ -34,7 +36,7 @@ from pluto_bt.behaviours.wrist import PointWrist
 
 ACTIONS: Final[tuple[type[Leaf], ...]] = (
     GoTo, CarGoTo, MakeTurn, MoveTo, PlanPath, FollowPath, NavigateTo, Explore, SetRectangle, Investigate, Resume, DriveVelocity, HoldHeading,
-    Stop, Release, WallFollow, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, Phase,
+    Stop, Release, WallFollow, Follow, PointWrist, LookAround, SweepWrist, UnfoldArm, FindPath, FollowRay, FindObject, CircleObject, BackOut, Phase,
     TryTurn, ReadAlarms, SetPose, StartModule, StopModule, WaitFor, Say,
 )  # fmt: skip
 CONDITIONS: Final[tuple[type[Leaf], ...]] = (

@@ -41,7 +41,6 @@ class FollowPath(ActionLeaf, PathDriver):
         """Look at the path; the rest needs a pose."""
         self.tolerance_m = float(self.get_input("tolerance_m"))
         self._taken: MapPath | None = None
-        robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)
 
     def follow(self, robot: Robot) -> Status:

@@ -50,7 +50,6 @@ class NavigateTo(PathDriver):
         self._blocked_since_s: float | None = None
         self._freeing: FreeItself | None = None
         self._freed_s = -math.inf
-        robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         return self.follow(robot)
 
     def wanted(self) -> Destination | None:

@@ -95,10 +95,7 @@ class Navigation:
 
     def seen(self) -> Array:
         """Points (n, 2) of the map where the sensors have seen something stand, near the robot."""
-        fine = self.around.fine
-        if fine is None:
-            return np.zeros((0, 2))
-        points = fine.standing()
+        points = self.around.fine.standing()
         near = np.hypot(points[:, 0] - self.around.robot[0], points[:, 1] - self.around.robot[1]) < SEEN_FOR_PLAN_M
         return moved(points[near], self.around.robot, self.around.believed)
 
@@ -108,11 +105,10 @@ class Navigation:
 
     def is_blocked(self, points: Array) -> bool:
         """True if the sensors see something in a stretch (k, 2) of a path over the map."""
-        fine = self.around.fine
-        if fine is None or not len(points):
+        if not len(points):
             return False
         here = moved(points, self.around.believed, self.around.robot)
-        return bool((fine.clearances_m(here) < self._outline.side_m).any())
+        return bool((self.around.fine.clearances_m(here) < self._outline.side_m).any())
 
     def blocked_places(self, points: Array) -> NDArray[np.intp]:
         """The indices of those of points (n, 2) of the map where the outline does not fit, by the map or by what was seen."""
@@ -122,8 +118,7 @@ class Navigation:
             assert planner is not None  # there is a map
             planner.map.lay_over(self.seen())
             rooms_m = planner.map.clearances_m(points)
-        if self.around.fine is not None:
-            rooms_m = np.minimum(rooms_m, self.around.fine.clearances_m(moved(points, self.around.believed, self.around.robot)))
+        rooms_m = np.minimum(rooms_m, self.around.fine.clearances_m(moved(points, self.around.believed, self.around.robot)))
         return np.flatnonzero(rooms_m < self._outline.side_m)
 
     def smoothed(self, path: MapPath) -> MapPath:

@@ -48,7 +48,7 @@ def is_near(around: Surroundings, goal: Pair) -> bool:
     distance_m = math.dist(here, around.robot[:2])
     if distance_m > p.near_goal_m:
         return False
-    return distance_m < p.tolerance_m or is_open(around.map, around.robot[:2], here, 0.8 * around.ways.least_m, 0.5)
+    return distance_m < p.tolerance_m or is_open(around.map, around.robot[:2], here, 0.8 * around.ways.passes_m, 0.5)
 
 
 class FindPath(RobotLeaf):
@@ -112,7 +112,7 @@ class FindPath(RobotLeaf):
         way = around.way
         self._set_output("found", way is not None)
         if way is None:
-            return self.succeed("all that can be reached is explored") if goal is None else self.fail("no-path", "every way is blocked")
+            return self.succeed("all that can be reached is explored") if goal is None else self.fail("no-path", around.why_no_way(goal))
         if goal is not None and way.leads_there and ray.is_done(way, around.robot, around.map.cell_m):
             self._set_output("near", True)
             return self.succeed("no path leads nearer to the goal")
@@ -136,7 +136,7 @@ class FollowRay(MotionLeaf):
         if not around.look(robot, now_s) or around.way is None:
             return self.fail("no-path", "there is no path to follow: FindPath comes first")
         self._goal = goal_of(self)
-        self._following = RayFollowing(around.map, around.ways.least_m, around.ways.room_m, around.openings)
+        self._following = RayFollowing(around.map, around.ways.passes_m, around.ways.room_m, around.openings)
         self._following.begin(around.way, self._find, now_s, around.robot)
         self._point: Pair | None = None
         self._heading_rad: float | None = None
@@ -170,7 +170,7 @@ class FollowRay(MotionLeaf):
         speed_mps = status.data[0] if status is not None else 0.0
         advice = self._following.step(now_s, around.robot, speed_mps, around.rectangle_here)
         if advice.kind == ray.GO and status is not None and status.element[1] == GotoStatus.STUCK:
-            advice = ray.Advice(ray.BLOCKED, text=status.text)
+            advice = ray.Advice(ray.BLOCKED, advice.point, text=status.text)
         return self._carry_out(robot, around, advice, status)
 
     def _carry_out(self, robot: Robot, around: Surroundings, advice: ray.Advice, status: FVectorState | None) -> Status:
@@ -207,10 +207,11 @@ class FollowRay(MotionLeaf):
 
     def _blocked(self, robot: Robot, around: Surroundings, advice: ray.Advice) -> Status:
         """Remember the place, and come away from it before anything is decided."""
-        around.shut_ahead(self.now_s())
+        around.shut_ahead(self.now_s(), advice.point)
         around.blocked += 1
         if around.blocked >= MOST_BLOCKED:
-            return self.fail("stuck", advice.text)
+            room_m, least_m = self._following.room_ahead_m, 2.0 * around.ways.least_m
+            return self.fail("stuck", f"{advice.text}; the way ahead is about {room_m:.1f} m wide, and the robot takes one of {least_m:.2f} m")
         self._freeing = FreeItself(around, self.now_s())
         return self._free(robot, around, self._freeing)
 

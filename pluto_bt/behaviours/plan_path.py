@@ -45,7 +45,6 @@ class Planning(RobotLeaf):
 
     def act(self, robot: Robot) -> Status:
         """Wait for a pose, or plan."""
-        robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         if robot.surroundings.look(robot, self.now_s(), only_finely=True):
             return self.plan(robot)
         word, text = why_no_pose(robot)

@@ -51,7 +51,11 @@ REASONS: Final[dict[str, Reason]] = {
     "no-goal": Reason("the leaf was given no goal", "give one: --port goal=VALUE, or an entry that is written before"),
     "no-input": Reason("a port that the leaf needs has no value on this way", "write its entry on every way that leads there, see the message"),
     "no-object": Reason("there is nothing to investigate", "bring the robot nearer to the object", True),
-    "no-path": Reason("there is no way to the goal on the map", "choose another goal, or correct the map", True),
+    "no-path": Reason(
+        "there is no way to the goal, on the map or as far as was seen",
+        "see in the message what is too narrow or in the way: open it, choose another goal, or correct the map",
+        True,
+    ),
     "no-pose": Reason("there is no position to steer by, or it is too old", "check localisation: odometry, gyro bias, and for the car a marker"),
     "not-connected": Reason("the mission runs without a robot", "run it with a world, or on the robot"),
     "no-wall": Reason("wall follow sees no wall within reach, or none with room beside it", "bring the robot nearer to a wall"),

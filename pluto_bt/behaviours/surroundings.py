@@ -40,13 +40,16 @@ MOST_BLOCKED = 6  # rays in a row that were blocked by something that no map sho
 class Surroundings:
     """The memory of one robot. `robot` and `believed` are its pose in dead reckoning and in `Localization/Pose`."""
 
-    def __init__(self, platform: Platform, parameters: MotionParameters) -> None:
+    def __init__(self, platform: Platform, parameters: MotionParameters, fine_cell_m: float) -> None:
+        """`fine_cell_m`: side of a cell of the fine map."""
         self.parameters = parameters
-        self.map = LocalMap(parameters)
+        fine = {"path_half_width_m": CELLS_OF_A_PATH * fine_cell_m, "wide_half_width_m": FINE_ROOM_M, "look_m": FINE_LOOK_M, "join_m": FINE_JOIN_M}
+        self.fine = LocalMap(msgspec.structs.replace(parameters, **fine))  # the same on smaller cells, for who passes through doors
+        self.map = LocalMap(parameters, fine=self.fine)
         self.ways = Ways(self.map, outline_of(platform.body.outline_m))
+        self._grids = (self.fine, self.map)  # in the order of their refreshing
         self.openings = Openings(self.map)
         self.rectangle: Rectangle | None = None  # in Localization/Pose
-        self.fine: LocalMap | None = None  # the same on smaller cells, for who passes through doors; kept once `look_finely` was called
         self._laser = platform.devices.laser
         self._front_m = outline_of(platform.body.outline_m).front_m
         self._has_run_into = False
@@ -84,30 +87,21 @@ class Surroundings:
         walked_ground.warm()
         self.ways.to_goal((0.0, 0.0, 0.0), (1.0, 0.0), None)
 
-    def look_finely(self, cell_m: float) -> None:
-        """Keep the fine map too from now on."""
-        if self.fine is None:
-            fine = {"path_half_width_m": CELLS_OF_A_PATH * cell_m, "wide_half_width_m": FINE_ROOM_M, "look_m": FINE_LOOK_M, "join_m": FINE_JOIN_M}
-            self.fine = LocalMap(msgspec.structs.replace(self.parameters, **fine), self.robot)
-
     def forget(self) -> None:
         """What was seen is not known any more; what was explored is."""
-        for grid in self._grids():
+        for grid in self._grids:
             grid.erase(self.robot[:2], 4.0 * CELLS * grid.cell_m, inside=True)
         self._walked.forget()
 
     def forget_square(self, middle: Pair, side_m: float, *, inside: bool) -> None:
         """What was seen in a square round a point (dead reckoning), or outside of it, is not known any more."""
-        for grid in self._grids():
+        for grid in self._grids:
             grid.erase(middle, side_m, inside=inside)
 
     @property
     def is_empty(self) -> bool:
         """True as long as nobody has looked: then no pose is known either."""
         return self._is_empty
-
-    def _grids(self) -> tuple[LocalMap, ...]:
-        return (self.map,) if self.fine is None else (self.map, self.fine)
 
     def look(self, robot: Robot, now_s: float, only_finely: bool = False) -> bool:
         """Take what the robot has seen since the last look. False if it is not known where it is.
@@ -126,7 +120,7 @@ class Surroundings:
         self._first_variance_m2 = min(self._first_variance_m2, variance_m2)
         self._doubt_m = min(MOST_DOUBT_M, 2.0 * math.sqrt(variance_m2 - self._first_variance_m2))
         if self._is_empty:
-            for grid in self._grids():
+            for grid in self._grids:
                 grid.lay(self.robot)
             self._is_empty = False
         self.map.visit(*self.robot[:2])
@@ -140,7 +134,7 @@ class Surroundings:
                 for grid in self._grids_for(view, only_finely):
                     grid.add(view.scan, view.laser, self._laser.z_m, view.tilt_rad, AGAIN_S if has_feet else 0.0)
                 self._note_walkers(view.scan, view.laser, view.tilt_rad)
-        for grid in self._grids():
+        for grid in self._grids:
             if now_s - grid.refreshed_s >= REFRESH_S and not (only_finely and grid is self.map):
                 grid.refresh(now_s)
         return True
@@ -148,17 +142,17 @@ class Surroundings:
     def _grids_for(self, view: ScanView, only_finely: bool) -> tuple[LocalMap, ...]:
         """Those that a scan is entered into. One that looks down finds what no later one may find again: it goes into all."""
         is_level = abs(view.tilt_rad) < LEVEL_RAD
-        if only_finely and self.fine is not None and is_level and 0.0 <= view.scan.stamp_s - self._coarse_s < RARELY_S:
+        if only_finely and is_level and 0.0 <= view.scan.stamp_s - self._coarse_s < RARELY_S:
             return (self.fine,)
         self._coarse_s = view.scan.stamp_s if is_level else self._coarse_s
-        return self._grids()
+        return self._grids
 
     def _note_walkers(self, scan: LaserScan, laser: Planar, tilt_rad: float) -> None:
         """Who walks is found by level scans; what the others find of him are his feet."""
         if abs(tilt_rad) < LEVEL_RAD:
             self._walked.take(scan, laser)
         elif len(feet := self._walked.places(scan.stamp_s, FEET_S)):
-            for grid in self._grids():
+            for grid in self._grids:
                 grid.forget_feet(feet)
 
     def _watch_passers_by(self, robot: Robot, now_s: float) -> None:
@@ -168,10 +162,11 @@ class Surroundings:
             bumper if isinstance(bumper, BumperState) else None,
         )  # fmt: skip
 
-    def shut_ahead(self, now_s: float) -> None:
-        """Something that no scan shows is in the way of the robot, close before its front."""
+    def shut_ahead(self, now_s: float, towards: Pair | None = None) -> None:
+        """Something that no scan shows is in the way of the robot, close before its front; or beside it, on its way to a point (dead reckoning)."""
         (x, y, theta), away_m = self.robot, self._front_m + SHUT_AHEAD_M
-        self.map.shut(x + away_m * math.cos(theta), y + away_m * math.sin(theta), SHUT_M, now_s)
+        heading_rad = theta if towards is None else math.atan2(towards[1] - y, towards[0] - x)
+        self.map.shut(x + away_m * math.cos(heading_rad), y + away_m * math.sin(heading_rad), SHUT_M, now_s)
 
     def await_passers_by(self, now_s: float) -> bool:
         """True while somebody is about who will walk on: what is blocked is blocked for a while."""
@@ -226,6 +221,18 @@ class Surroundings:
         self._reopened += 1
         self.map.refresh(self.map.refreshed_s)
         return self.find(goal)
+
+    def why_no_way(self, goal: Pair) -> str:
+        """Why there is no way to a goal (`Localization/Pose`): what is too narrow, and how much the robot takes."""
+        here, rectangle = self.to_dead_reckoning(goal), self.rectangle_here
+        if rectangle is not None and self.ways.to_goal(self.robot, here, None) is not None:
+            return "every way leads out of the rectangle"
+        gap = self.ways.widest_gap(self.robot, here, None)
+        if gap is None:
+            return "every way is blocked: as far as was seen no gap leads on towards the goal"
+        x_m, y_m = self.to_map((gap.x_m, gap.y_m))
+        wide = f"the widest gap on the way, at {x_m:.1f};{y_m:.1f}, is about {gap.width_m:.1f} m wide"
+        return f"every way is blocked: {wide}, and the robot takes one of {2.0 * self.ways.least_m:.2f} m"
 
     def _find(self, goal: Pair | None, rectangle: Rectangle | None) -> Way | None:
         if goal is None:

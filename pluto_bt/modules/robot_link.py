@@ -75,7 +75,9 @@ class RobotLink:
     def surroundings(self) -> Surroundings:
         """The local map and what belongs to it; made when it is first asked for."""
         if self._surroundings is None:
-            self._surroundings = Surroundings(self._context.platform, self._context.parameters(MotionParameters))
+            context = self._context
+            cell_m = context.parameters(PlanParameters).seen_cell_m
+            self._surroundings = Surroundings(context.platform, context.parameters(MotionParameters), cell_m)
         return self._surroundings
 
     @property

@@ -15,6 +15,7 @@ from pluto_bt.maps.platform import Platform
 from pluto_bt.skills import reasons
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.avoid_senses import AvoidSenses
+from pluto_bt.skills.backing import Behind
 from pluto_bt.skills.drive import DriveParameters, drive_limits, is_finite
 from pluto_bt.skills.goto import Goto
 from pluto_bt.skills.heading import regulate
@@ -75,7 +76,7 @@ class Avoid:
         self.verdict = ALL_WELL
         self.sight.widen(0.0)
         if kind is CommandType.GOTO:
-            self._goto.begin(command, now_s)
+            self._goto.begin(command, now_s, self._behind)
         elif kind is CommandType.WALL_FOLLOW:
             self._wall.begin(command)
             self.sight.widen(self._wall.reach_m)
@@ -115,6 +116,14 @@ class Avoid:
         if laser.code is LinkStatus.LASER_FATAL:
             code, reason, text = int(laser.code), reason or laser.reason, text or laser.text
         return FVectorState(now_s, data, (code, int(self.goto_status)), reason, text)
+
+    @property
+    def _behind(self) -> Behind:
+        """What is known of what lies behind, by the sensors that A names."""
+        avoidance = Avoidance.NONE if self._kind is None else self._kind[0]
+        if self.sight.sees_behind(bool(avoidance & Avoidance.SONAR)):
+            return Behind.HEARD
+        return Behind.SEEN if avoidance & Avoidance.LASER and self.sight.laser is not None else Behind.UNKNOWN
 
     @property
     def _asks_laser(self) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 
 from pluto_bt.maps.geometry import wrap_angle
 from pluto_bt.skills.limits import Twist
+from pluto_bt.skills.local_map import LocalMap
 from pluto_bt.skills.objects import Thing, smallest_circle
 from pluto_bt.skills.outline import Array, Planar
 from pluto_bt.skills.sight import ScanView
@@ -65,6 +66,55 @@ def circle(robot: Planar, thing: Thing, radius_m: float, speed_mps: float, side:
     error_rad = wrap_angle(math.atan2(dy, dx) + side * (math.pi / 2.0 + inward_rad) - robot[2])
     forward_mps = speed_mps * max(0.0, 1.0 - abs(error_rad) / SLOW_RAD)
     return forward_mps, side * forward_mps / distance_m + TURN_PER_S * error_rad
+
+
+def facing_rad(robot: Planar, thing: Thing, ahead_m: float, pan_rad: float) -> float:
+    """The heading with which a laser `ahead_m` before the robot's middle, turned aside by `pan_rad`, looks at the object; the nearer of both sides.
+
+    In the triangle of robot, laser and object the angle at the laser is π - pan, so the object lies pan - asin(ahead / distance · sin pan) aside.
+    """
+    dx, dy = thing.x_m - robot[0], thing.y_m - robot[1]
+    bearing_rad = math.atan2(dy, dx)
+    aside_rad = pan_rad - math.asin(min(1.0, ahead_m / max(math.hypot(dx, dy), ahead_m) * math.sin(pan_rad)))
+    return bearing_rad - math.copysign(aside_rad, wrap_angle(bearing_rad - robot[2]))
+
+
+def tightest(map: LocalMap, thing: Thing, radius_m: float) -> tuple[float, float, float]:
+    """The place x m, y m (dead reckoning) on a circle round a thing with the least room, and how much that is."""
+    angles = np.arange(0.0, math.tau, map.cell_m / radius_m)
+    places = np.column_stack((thing.x_m + radius_m * np.cos(angles), thing.y_m + radius_m * np.sin(angles)))
+    rooms_m = map.clearances_m(places)
+    at = int(np.argmin(rooms_m))
+    return float(places[at, 0]), float(places[at, 1]), float(rooms_m[at])
+
+
+class Looks:
+    """When the robot stops on its round to look at the object: so many times a turn, evenly."""
+
+    def __init__(self, per_turn: int) -> None:
+        self._apart = math.inf if per_turn == 0 else 1.0 / per_turn
+        self._next = 0.0 if per_turn else math.inf
+        self._since_s: float | None = None  # since when it turns to it …
+        self._there_s: float | None = None  # … and since when it looks
+
+    @property
+    def is_on(self) -> bool:
+        """True during a look."""
+        return self._since_s is not None
+
+    def is_due(self, turns: float) -> bool:
+        """True if a look is on, or due after so many turns."""
+        return self.is_on or turns >= self._next
+
+    def goes_on(self, now_s: float, is_there: bool, look_s: float, most_s: float) -> bool:
+        """False when the laser has faced the object for `look_s`, or has not got there within `most_s`; then the next look is waited for."""
+        self._since_s = self._since_s if self._since_s is not None else now_s
+        self._there_s = None if not is_there else self._there_s if self._there_s is not None else now_s
+        if (self._there_s is None or now_s - self._there_s < look_s) and now_s - self._since_s < most_s:
+            return True
+        self._since_s = self._there_s = None
+        self._next += self._apart
+        return False
 
 
 class Round:

@@ -12,7 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from pluto_bt.blackboard.messages import LaserScan, read_only
+from pluto_bt.skills import map_kernels
 from pluto_bt.skills.fan import Fan
+from pluto_bt.skills.grid_shift import shift
 from pluto_bt.skills.local_grid import CELLS, NEVER_S, LocalGrid
 from pluto_bt.skills.map_kernels import MOST_NUMBER, Bytes, Floats, changes, clearances, mark_ground, mark_level
 from pluto_bt.skills.motion_parameters import MotionParameters
@@ -37,8 +39,9 @@ class _Shut(NamedTuple):
 class LocalMap(LocalGrid):
     """The grid with what enters it and leaves it. `clearance` is kept up to date by `refresh`."""
 
-    def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0)) -> None:
-        self.parameters = parameters
+    def __init__(self, parameters: MotionParameters, middle: Planar = (0.0, 0.0, 0.0), fine: LocalMap | None = None) -> None:
+        """`fine`: the same things on smaller cells, refreshed before this one: a door is as wide there as it is, give or take a cell of that."""
+        self.parameters, self._fine = parameters, fine
         cell_m = parameters.path_half_width_m / CELLS_OF_A_PATH
         super().__init__(cell_m, parameters.wide_half_width_m / cell_m)
         self.look_m = min(parameters.look_m, 0.35 * CELLS * cell_m)
@@ -57,6 +60,17 @@ class LocalMap(LocalGrid):
         self.refreshed_s = -math.inf  # when `clearance` was brought up to date; long ago if that is due at once
         self._window: Window | None = None  # where something changed since then
         self._newest_low_s = NEVER_S  # when something was last found to lie low; that is forgotten by itself wherever it is
+
+    def blank(self) -> None:
+        """Nothing is known, neither in the cells nor in what `refresh` makes `clearance` of."""
+        super().blank()
+        self._blunt: Floats = self.clearance if self._fine is None else self.clearance.copy()  # as these cells alone have it
+        self._renewed: Window | None = None  # where that, or what a grid on larger cells makes of it, is newer than `clearance`
+
+    @property
+    def doubt_m(self) -> float:
+        """How much narrower than it is a narrow place may show: two halves of a cell of the fine grid. Without one nobody relies on narrow places."""
+        return 0.0 if self._fine is None else self._fine.cell_m
 
     def add(self, scan: LaserScan, laser: Planar, height_m: float, tilt_rad: float, again_s: float = 0.0) -> None:
         """Take a scan.
@@ -157,6 +171,22 @@ class LocalMap(LocalGrid):
     def refresh(self, now_s: float) -> None:
         """Bring `clearance` up to date where something changed."""
         self.refreshed_s = now_s
+        self._reckon(now_s)
+        if self._fine is not None:
+            self._sharpen(self._fine)
+
+    def _sharpen(self, fine: LocalMap) -> None:
+        """Take over how wide a narrow place is on smaller cells, where those changed or ours did."""
+        ratio = self.cell_m / fine.cell_m
+        i, j = fine.place(self.i0 * self.cell_m, self.j0 * self.cell_m)  # of our first corner
+        window, self._renewed, theirs, fine._renewed = self._renewed, None, fine._renewed, None
+        if theirs is not None:
+            window = theirs.seen_from(i, j, ratio).joined(window)
+        if window is not None:
+            at = (ratio, i, j, CELLS_OF_A_PATH, *window.grown(0, CELLS))
+            map_kernels.sharpen(self._blunt, fine.clearance, fine.evidence, *at, self.clearance)
+
+    def _reckon(self, now_s: float) -> None:
         if self._window is None:
             return
         keep, oldest_s = math.ceil(self.far_cells), self._oldest_s(now_s)
@@ -165,7 +195,8 @@ class LocalMap(LocalGrid):
             self._newest_low_s, window = NEVER_S, Window(0, CELLS, 0, CELLS)  # all of it is forgotten, wherever it lay
         changed = Window(*changes(self.evidence, self.low_s, oldest_s, self._stands, *window))
         if changed.i0 < changed.i1:  # mostly a few cells, or none
-            clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self.clearance, keep, self.far_cells)
+            clearances(self.evidence, self.low_s, oldest_s, *changed.grown(2 * keep, CELLS), self._blunt, keep, self.far_cells)
+            self._renewed = changed.grown(keep, CELLS).joined(self._renewed)
 
     def without_walkers(self, places: Array, now_s: float) -> tuple[Bytes, Floats]:
         """Evidence and clearances as if nothing stood at and beside `places` (n, 2), where somebody walked."""
@@ -200,6 +231,10 @@ class LocalMap(LocalGrid):
 
     def _follow(self, robot: Planar) -> None:
         shift_i, shift_j = self.go_along(robot)
-        if shift_i or shift_j:
-            self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
-            self._visited = None
+        if not (shift_i or shift_j):
+            return
+        if self._blunt is not self.clearance:
+            shift(self._blunt, shift_i, shift_j, self.far_cells)
+        self._window = None if self._window is None else self._window.moved(shift_i, shift_j)
+        self._renewed = None if self._renewed is None else self._renewed.moved(shift_i, shift_j)
+        self._visited = None

@@ -26,6 +26,7 @@ FORGOTTEN_S = 6.0  # what was seen to lie low before that is not known any more
 TALL_M = 0.35  # what is hit so high up is a thing that level scans see, or will be hit lower when it is farther away
 LOW_X, HIGH_X, LOW_Y, HIGH_Y = range(4)  # of a box of cells
 SAMPLE = 0.7  # cells between two samples of a beam
+MOST_BLUNT = np.float32(1.0)  # cells: nothing is farther off than that from where its cell says, seen from the freest place of another cell
 ACROSS, DIAGONALLY = np.float32(1.0), np.float32(1.4142)  # cells from the middle of one to that of the next
 
 
@@ -228,6 +229,35 @@ def clearances(
     for a in range(first_i, last_i):
         for b in range(first_j, last_j):
             out[i0 + a, j0 + b] = near[a + 1, b + 1]
+
+
+@kernel
+def sharpen(
+    blunt: Floats, fine: Floats, fine_evidence: Bytes, ratio: float, fine_i: float, fine_j: float, near: float, i0: int, i1: int, j0: int, j1: int,
+    out: Floats,
+) -> None:  # fmt: skip
+    """Clearances of the window [i0, i1) x [j0, j1) as the freest of the smaller cells in each cell has them; as `blunt` has them where nothing
+    is `near` or no smaller cell was seen free.
+
+    Args:
+        blunt, out: clearances, cells. fine, fine_evidence: of a grid with cells `ratio` times smaller, whose clearances count in those.
+        fine_i, fine_j: where the first corner lies in that grid.
+    """
+    rows, columns = fine.shape
+    for i in range(i0, i1):
+        low_i, high_i = math.ceil(fine_i + i * ratio - 0.5), math.ceil(fine_i + (i + 1) * ratio - 0.5)
+        for j in range(j0, j1):
+            free = blunt[i, j]
+            if 0.5 < free < near:
+                low_j, high_j = math.ceil(fine_j + j * ratio - 0.5), math.ceil(fine_j + (j + 1) * ratio - 0.5)
+                best = np.float32(-1.0)
+                for a in range(max(0, low_i), min(rows, high_i)):
+                    for b in range(max(0, low_j), min(columns, high_j)):
+                        if fine_evidence[a, b] < 0 and fine[a, b] > best:
+                            best = fine[a, b]
+                if best >= 0.0:
+                    free = min(np.float32(best / ratio), free + MOST_BLUNT)
+            out[i, j] = free
 
 
 @inline_kernel

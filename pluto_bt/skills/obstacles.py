@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pluto_bt.blackboard.messages import LaserScan
-from pluto_bt.maps.kernel import kernel
+from pluto_bt.maps.kernel import inline_kernel, kernel
 from pluto_bt.skills import movers
 from pluto_bt.skills.avoid_parameters import AvoidParameters
 from pluto_bt.skills.fan import Fan
@@ -19,6 +19,7 @@ from pluto_bt.skills.seen_kernels import outside_m
 
 X, Y, MARGIN, SINCE, VX, VY = range(6)  # columns of the memory
 FIELD_EDGE_RAD = math.radians(1.0)  # memory this near the edge of the field of view is kept: the edge beam may just miss it
+BACKED_M = 0.2  # what is met by two neighbouring beams lies so near together
 HEARD_THROUGH_M = 0.4  # an echo so much farther says that nothing is where one was before
 INSIDE_M = -0.02  # what stood deeper inside the outline than this is not there any more: the robot is
 APEX_M = 0.06  # an echo from nearer than the ring can tell was put so near to its transducer
@@ -119,7 +120,7 @@ class Obstacles:
         first_rad, last_rad = scan.angle_min_rad, scan.angle_min_rad + scan.angle_step_rad * (len(scan.ranges_m) - 1)
         field = (first_rad + FIELD_EDGE_RAD, last_rad - FIELD_EDGE_RAD)
         oldest = (p.margin_m, now_s - p.memory_s, now_s - p.walker_memory_s)
-        self._kept = _outside_the_field(old, laser, field, oldest, self.reach_m + 1.0)
+        self._kept = _outside_the_field(old, len(self._kept), laser, field, oldest, self.reach_m + 1.0)
 
 
 def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:
@@ -131,11 +132,14 @@ def _place(x: Array, y: Array, frame: Planar, out: Array) -> None:
 
 @kernel
 def _outside_the_field(
-    points: Array, laser: Planar, field_rad: tuple[float, float], oldest: tuple[float, float, float], reach_m: float
+    points: Array, old_count: int, laser: Planar, field_rad: tuple[float, float], oldest: tuple[float, float, float], reach_m: float
 ) -> Array:
     """The points (rows of the memory) that a laser does not look at, are near enough, and young enough.
 
+    What leaves the field of view is near the robot's flank, where many beams meet all that stands: a single one was dazzled.
+
     Args:
+        old_count: so many had left the field of view before; the others are of one scan, beam by beam.
         field_rad: the first and the last bearing of the field of view.
         oldest: margin of what stands, s since when such counts, and s since when others do: who walks may be seen before his pace is known.
     """
@@ -146,8 +150,20 @@ def _outside_the_field(
         if points[i, 3] <= (oldest[1] if points[i, 2] == oldest[0] else oldest[2]) or dx * dx + dy * dy >= reach_m * reach_m:
             continue
         bearing_rad = math.atan2(c * dy - s * dx, c * dx + s * dy)
-        kept[i] = bearing_rad < field_rad[0] or bearing_rad > field_rad[1]
+        is_outside = bearing_rad < field_rad[0] or bearing_rad > field_rad[1]
+        kept[i] = is_outside and (i < old_count or _is_backed(points, i, old_count))
     return points[kept]
+
+
+@inline_kernel
+def _is_backed(points: Array, i: int, first: int) -> bool:
+    """Whether a neighbour in the same scan, whose rows begin at `first`, met the same thing."""
+    for other in (i - 1, i + 1):
+        if first <= other < points.shape[0]:
+            dx, dy = points[other, 0] - points[i, 0], points[other, 1] - points[i, 1]
+            if dx * dx + dy * dy < BACKED_M * BACKED_M:
+                return True
+    return False
 
 
 @kernel
@@ -204,6 +220,6 @@ def warm() -> None:
     """Use the kernels once that an empty place does not need."""
     movers.warm()
     here = (0.0, 0.0, 0.0)
-    _outside_the_field(np.zeros((1, 6)), here, (0.0, 0.0), here, 1.0)
+    _outside_the_field(np.zeros((1, 6)), 0, here, (0.0, 0.0), here, 1.0)
     _outside_the_robot(np.zeros((1, 6)), np.zeros((1, 3)), *here, 0.0)
     _heard_through(np.zeros((1, 6)), np.zeros((1, 3)), np.zeros(1), 0.1, *here)

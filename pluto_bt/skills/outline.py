@@ -35,6 +35,10 @@ class Outline:
         """How far a point is from the outline; negative inside. At corners the nearer of the two edges' lines counts, which is never too far."""
         return float(max(nx * x_m + ny * y_m - c for nx, ny, c in self.planes.tolist()))
 
+    def round_a_circle_m(self, radius_m: float) -> float:
+        """How far the outline reaches out of a circle round which the centre goes: its outer corners swing out."""
+        return math.hypot(radius_m + self.side_m, max(self.front_m, self.back_m)) - radius_m
+
     def way_out_m(self, x_m: float, y_m: float, dx: float, dy: float) -> float:
         """How far a ray from (x, y) along the unit vector (dx, dy) runs inside the outline; 0 if it starts outside."""
         if self.distance_m(x_m, y_m) >= 0.0:

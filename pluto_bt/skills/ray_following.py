@@ -7,6 +7,7 @@ reach, at an opening, or where it is blocked. What to do then, its caller decide
 from __future__ import annotations
 
 import math
+from collections import deque
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -21,12 +22,14 @@ from pluto_bt.skills.ways import Way
 
 REPLAN_S = 3.0  # a way is looked for anew so often, for more has been seen
 HASTE_S = 0.5  # and not more often than this where the old one is blocked
-STUCK_S, STUCK_M = 8.0, 0.4  # who has not come so far in so long is stuck
+STUCK_S, STUCK_M = 8.0, 0.4  # who has not come so far in so long is stuck, unless he turns nearer to the way than he has been in this place …
+PLACES = 3  # … and coming back to one of the last places is not coming far
 END_M = 0.6  # so near to its end a way is done
 TURN_RAD = math.radians(70.0)  # a way that leads so far aside is turned to on the spot
 TURNED_RAD = math.radians(25.0)
 TURNING_S, TURNING_RAD = 4.0, math.radians(4.0)  # who has turned less in so long cannot turn here: goto has to find a way out
 NO_TURN_S = 12.0  # and does so for so long
+NEXT_M = 2.5  # how far ahead a narrow place is told of
 AHEAD_S = 0.8  # where the robot will be after so long must lie inside the rectangle
 
 GO, TURN, DONE, OPENING, BLOCKED, LOST = "go", "turn", "done", "opening", "blocked", "lost"
@@ -56,14 +59,16 @@ class RayFollowing:
         """Follow `way`; `find` gives a new one to the same end when asked."""
         self._way, self._find = way, find
         self._found_s = now_s
-        self._mark, self._mark_s = robot[:2], now_s
+        self._places = deque([robot[:2]], maxlen=PLACES)
+        self._mark_s, self._least_off_rad = now_s, math.inf
         self._is_turning = False
         self._turn_mark_rad, self._turn_mark_s, self._may_turn_s = robot[2], now_s, now_s
 
     def step(self, now_s: float, robot: Planar, speed_mps: float, rectangle: Rectangle | None) -> Advice:
         """What to do now."""
-        if math.dist(robot[:2], self._mark) > STUCK_M or self._is_turning:
-            self._mark, self._mark_s = robot[:2], now_s
+        if all(math.dist(robot[:2], place) > STUCK_M for place in self._places):
+            self._places.append(robot[:2])
+            self._mark_s, self._least_off_rad = now_s, math.inf
         if now_s - self._mark_s > STUCK_S:
             return Advice(BLOCKED, self._point_ahead(robot, 1.0), text="no way made for a while")
         if not self._keep_way(now_s, robot):
@@ -73,9 +78,17 @@ class RayFollowing:
         point = self._point_ahead(robot, self._ahead_m)
         heading_rad = math.atan2(point[1] - robot[1], point[0] - robot[0])
         if self._must_turn(robot, heading_rad, speed_mps, rectangle) and self._can_turn(now_s, robot):
+            off_rad = abs(wrap_angle(heading_rad - robot[2]))
+            if off_rad < self._least_off_rad - TURNING_RAD:
+                self._least_off_rad, self._mark_s = off_rad, now_s
             return Advice(TURN, point, heading_rad)
         side = "" if self._knows_the_way() else self._openings.look(robot, heading_rad)
         return Advice(OPENING, point, heading_rad, side, f"an opening on the {side}") if side else Advice(GO, point, heading_rad)
+
+    @property
+    def room_ahead_m(self) -> float:
+        """How wide the narrowest place of the next stretch is."""
+        return 2.0 * float(self._map.clearances_m(self._way.points[: math.ceil(NEXT_M / self._map.cell_m)]).min())
 
     def pause(self, now_s: float) -> None:
         """Time in which the robot had to wait for another reason does not count as being stuck."""
@@ -94,13 +107,19 @@ class RayFollowing:
                 return True  # in a doorway: the old way leads on to where there is room to turn
             if way is None:
                 return False
+            if abs(wrap_angle(self._heading_of(way, robot) - self._heading_of(self._way, robot))) > TURN_RAD:
+                self._least_off_rad = math.inf  # another turn begins
             self._way = way
         return True
 
     def _turns_back(self, robot: Planar, way: Way) -> bool:
         """True if the robot has to turn on the spot before it can follow a way."""
+        return abs(wrap_angle(self._heading_of(way, robot) - robot[2])) > TURN_RAD
+
+    def _heading_of(self, way: Way, robot: Planar) -> float:
+        """Where a way leads to from the robot."""
         x, y = way.points[min(len(way.points) - 1, math.ceil(self._room_m / self._map.cell_m))].tolist()
-        return abs(wrap_angle(math.atan2(y - robot[1], x - robot[0]) - robot[2])) > TURN_RAD
+        return math.atan2(y - robot[1], x - robot[0])
 
     def _is_free(self) -> bool:
         """Nothing stands on the next stretch."""

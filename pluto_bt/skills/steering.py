@@ -33,12 +33,14 @@ _HEADINGS = -math.pi + STEP_RAD * np.arange(HEADINGS)
 
 @dataclass(slots=True)
 class Steering:
-    """A decision: `heading_rad` relative to the robot's, how far the way is free on it, and how much room there is beside it."""
+    """A decision: `heading_rad` relative to the robot's, how far the way is free on it, and how much room there is beside it; and `wish_rad`, the
+    heading that a robot would take that could turn as it liked."""
 
     heading_rad: float
     free_m: float
     room_m: float
     goal_is_free: bool
+    wish_rad: float
 
 
 class Steer:
@@ -74,10 +76,11 @@ class Steer:
         change = self._last_rad is not None
         last_rad = wrap_angle(self._last_rad - heading_rad) if self._last_rad is not None else 0.0
         best = weigh(headings, ways, sum_rad, goal_rad, last_rad, change, self._side, enough_m, turnable_rad[0], turnable_rad[1])
+        wish = weigh(headings, ways, sum_rad, goal_rad, last_rad, change, self._side, enough_m, math.pi, math.pi)
         chosen_rad, free_m, room_m = float(headings[best]), float(ways[0, best]), float(ways[1, best])
         goal_is_free = bool(ways[0, -1] >= enough_m)
         self._remember(chosen_rad, goal_rad, heading_rad, goal_is_free)
-        return Steering(chosen_rad, free_m, room_m, goal_is_free)
+        return Steering(chosen_rad, free_m, room_m, goal_is_free, float(headings[wish]))
 
     def _remember(self, chosen_rad: float, goal_rad: float, heading_rad: float, goal_is_free: bool) -> None:
         self._last_rad = chosen_rad + heading_rad

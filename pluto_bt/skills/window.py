@@ -36,6 +36,11 @@ class Window(NamedTuple):
         """The same cells in a grid whose first cell lies so many cells farther on."""
         return Window(self.i0 - di, self.i1 - di, self.j0 - dj, self.j1 - dj)
 
+    def seen_from(self, i: float, j: float, ratio: float) -> Window:
+        """The cells of a coarser grid that these touch: its first corner lies at (i, j) here, and its cells are so many times as large."""
+        low_i, high_i, low_j, high_j = (self.i0 - i) / ratio, (self.i1 - i) / ratio, (self.j0 - j) / ratio, (self.j1 - j) / ratio
+        return Window(math.floor(low_i), math.ceil(high_i), math.floor(low_j), math.ceil(high_j))
+
     def grown(self, by: int, size: int) -> Window:
         """With so many cells more on each side, as far as a square grid of `size` has them."""
         return Window(max(0, self.i0 - by), min(size, self.i1 + by), max(0, self.j0 - by), min(size, self.j1 + by))

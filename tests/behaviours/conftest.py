@@ -86,7 +86,7 @@ class FakeRobot:
     @property
     def surroundings(self) -> Surroundings:
         if self._surroundings is None:
-            self._surroundings = Surroundings(self.platform, MotionParameters())
+            self._surroundings = Surroundings(self.platform, MotionParameters(), PlanParameters().seen_cell_m)
         return self._surroundings
 
     @property

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import msgspec
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -14,7 +15,7 @@ from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
 from pluto_bt.skills.local_grid import CELLS
 from pluto_bt.skills.local_map import LocalMap
-from pluto_bt.skills.map_kernels import Floats, clearances
+from pluto_bt.skills.map_kernels import Floats, clearances, sharpen
 from pluto_bt.skills.motion_parameters import MotionParameters
 
 ANGLES = -math.pi / 2.0 + math.radians(0.5) * np.arange(361)
@@ -223,3 +224,36 @@ def test_a_look_at_even_ground_finds_nothing_low_and_costs_later_scans_nothing()
     map.add(scan(nothing, (0.0, 0.0, 0.0)), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
     map.refresh(MotionParameters().ground_memory_s + 2.0)
     assert not map.has_low
+@pytest.mark.parametrize("phase_m", [0.0, 0.06, 0.13, 0.19])
+def test_with_a_fine_grid_a_door_is_as_wide_as_it_is_wherever_it_falls_on_the_cells(phase_m: float) -> None:
+    p = MotionParameters()
+    fine = LocalMap(msgspec.structs.replace(p, path_half_width_m=0.6, wide_half_width_m=2.0, look_m=8.0, join_m=0.3))
+    map = LocalMap(p, fine=fine)
+    left, right = 0.7 + phase_m, 0.7 - phase_m
+    scene = Scene(World("w", shapes=(box("a", 3.0, left, 3.3, 6.0), box("b", 3.0, -6.0, 3.3, -right))))
+    for k in range(3):
+        for grid in (fine, map):
+            grid.add(scan(scene, (0.0, 0.0, 0.0), 0.0, 0.5 * k), (0.0, 0.0, 0.0), HEIGHT_M, 0.0)
+    for grid in (fine, map):
+        grid.refresh(1.5)
+    in_the_door = max(map.clearance_m(3.1, y_m) for y_m in np.arange(-0.7, 0.8, 0.1).tolist())
+    assert in_the_door == pytest.approx(0.7, abs=0.11)
+    assert map.clearance_m(3.1, 2.0) == 0.0, "a wall stays a wall"
+
+
+@given(seed=st.integers(0, 200), shift_i=st.integers(-7, 7))
+@settings(max_examples=25, deadline=None)
+def test_sharpened_clearances_are_those_of_a_slow_twin(seed: int, shift_i: int) -> None:
+    rng = np.random.default_rng(seed)
+    blunt, fine = rng.uniform(0.0, 9.0, (12, 12)).astype(np.float32), rng.uniform(0.0, 20.0, (30, 30)).astype(np.float32)
+    evidence = rng.integers(-4, 6, (30, 30)).astype(np.int8)
+    out, ratio, near = blunt.copy(), 2.5, 6.0
+    sharpen(blunt, fine, evidence, ratio, float(shift_i), 1.0, near, 2, 11, 0, 12, out)
+    for i in range(12):
+        for j in range(12):
+            inside = [
+                float(fine[a, b]) for a in range(30) for b in range(30)
+                if i <= (a + 0.5 - shift_i) / ratio < i + 1 and j <= (b + 0.5 - 1.0) / ratio < j + 1 and evidence[a, b] < 0
+            ]  # fmt: skip
+            is_sharpened = 2 <= i < 11 and 0.5 < blunt[i, j] < near and inside
+            assert out[i, j] == pytest.approx(min(max(inside) / ratio, blunt[i, j] + 1.0) if is_sharpened else blunt[i, j], abs=1e-5)

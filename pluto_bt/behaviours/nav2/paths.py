@@ -153,7 +153,6 @@ class PathCheck(RobotLeaf):
         return Status.FAILURE if blocked else Status.SUCCESS
 
     def _blocked(self, robot: Robot, path: MapPath) -> list[Destination]:
-        robot.surroundings.look_finely(robot.navigation.parameters.seen_cell_m)
         if not robot.surroundings.look(robot, self.now_s()):
             return []
         first = path.nearest(*robot.surroundings.believed[:2])
