@@ -20,12 +20,14 @@ class BackOut(MotionLeaf):
     """Backs out until the robot can turn round, and proves it by turning. A goto to a place far behind does the work: it knows what stands around,
     backs as long as that keeps it from turning, and then turns. Fails with `stuck` where it can neither turn nor go any farther back."""
 
-    WAY: ClassVar = "stays"
+    DEVICES: ClassVar = ("laser", "sonar")
     INPUT_PORTS = dict(MOTION_INPUTS)
     OUTPUT_PORTS = dict(MOTION_OUTPUTS)
 
     def begin(self, robot: Robot) -> Status | None:
         """Go where it came from."""
+        if lack := self.lacks(robot.platform.devices):
+            return self.fail("no-device", lack)
         pose = pose_of(robot)
         if pose is None:
             return self.fail(*why_no_pose(robot))

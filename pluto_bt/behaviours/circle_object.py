@@ -51,6 +51,7 @@ class CircleObject(MotionLeaf):
 
     def resume(self, robot: Robot) -> None:
         """The next step posts anyway."""
+        self._looks.pause()
         self._sent_s, self._standstill = -math.inf, Standstill(self.now_s())
 
     def follow(self, robot: Robot) -> Status:

@@ -50,7 +50,7 @@ class Follow(MotionLeaf):
         if lack := self.lacks(robot.platform.devices):
             return self.fail("no-device", lack)
         self._skill = Skill(float(self.get_input("distance_m")), self.max_speed_mps(robot), self.now_s())
-        self._scan_s = self._next_post_s = -math.inf
+        self._scan_s = self._next_post_s = self._next_stand_s = -math.inf
         self._found_s: float | None = None
         self._stand(robot)
         return None
@@ -64,6 +64,7 @@ class Follow(MotionLeaf):
         """What happened during the pause is unknown: the target is looked for where it was."""
         self._skill.pause(self._gap_s)
         self._ticket, self._was_accepted, self._next_post_s = None, False, -math.inf
+        self._next_stand_s = -math.inf
         self._posted_s = self._last_s
 
     def follow(self, robot: Robot) -> Status:
@@ -104,8 +105,8 @@ class Follow(MotionLeaf):
     def _stand(self, robot: Robot, text: str = "") -> Status:
         """Told again and again, so that the chain tells what becomes of the sensors meanwhile."""
         now_s = self.now_s()
-        if now_s >= self._next_post_s - 1e-6 or (self._ticket is not None and self._ticket.command.velocity != STILL):
-            self._next_post_s = now_s + REFRESH_S
+        if now_s >= self._next_stand_s - 1e-6 or (self._ticket is not None and self._ticket.command.velocity != STILL):
+            self._next_stand_s, self._next_post_s = now_s + REFRESH_S, now_s
             self.post(robot, CommandType.VELOCITY)
         return self.wait(text)
 

@@ -71,6 +71,7 @@ class MotionLeaf(RobotLeaf):
             return self.wait("starting") if ended is None else self._told(ended)
         if was_paused:  # that time does not count
             self._start_s += self._gap_s
+            self._placeless_s = -math.inf
             self.resume(robot)
         if self.elapsed_s >= self._timeout_s:
             return self.fail("timeout", f"{self._timeout_s:g} s are over")

@@ -121,7 +121,7 @@ def pose_doubt(robot: Robot) -> FVectorState:
 
 
 def why_no_pose(robot: Robot) -> tuple[str, str]:
-    """Word and sentence for a leaf that has no pose to go by: `lost` where somebody carried the robot off, else `no-pose`."""
+    """Word and sentence for a leaf that has no pose to go by: the word of what speaks against it (`PLACELESS`), else `no-pose`."""
     doubt = pose_doubt(robot)
     return doubt.reason or reasons.NO_POSE, doubt.text or "it is not known where the robot is"
 

@@ -28,6 +28,7 @@ class SteppedLeaf(MotionLeaf):
     """Waits until it knows where the robot points, then calls `decide` every 0.1 s; early ticks change nothing."""
 
     NEEDS_MARKER = False
+    PATIENCE_S = {"lost": ELSEWHERE_WAIT_S}  # as `_missing` says
 
     def begin(self, robot: Robot) -> Status | None:
         """Nothing moves before the first decision."""
@@ -51,6 +52,7 @@ class SteppedLeaf(MotionLeaf):
         """The next step posts anyway."""
         self.restart()
         self._next_step_s, self._was_accepted, self._posted_s = self._last_s, False, self._last_s
+        self._ready_since_s = self._last_s
         self._ticket = None
 
     def follow(self, robot: Robot) -> Status:
@@ -83,7 +85,7 @@ class SteppedLeaf(MotionLeaf):
         is_seen = isinstance(marker, MarkerState) and marker.accepted_count > 0
         if self.NEEDS_MARKER and devices.marker is not None and not is_seen:
             return "waiting for an accepted marker", MARKER_WAIT_S
-        if isinstance(marker, MarkerState) and marker.is_elsewhere:
+        if pose is None and isinstance(marker, MarkerState) and marker.is_elsewhere:
             return pose_doubt(robot).text or "the markers see it elsewhere", ELSEWHERE_WAIT_S
         if pose is not None:
             return "", 0.0

@@ -14,7 +14,7 @@ from pluto_bt.behaviours.robot import Robot
 from pluto_bt.behaviours.standstill import Standstill
 from pluto_bt.behaviours.way_driven import WayDriven
 from pluto_bt.blackboard.codes import CommandType
-from pluto_bt.skills.limits import clamp
+from pluto_bt.skills.limits import STILL, clamp
 
 REFRESH_S: Final = 1.0
 STUCK_S: Final = 8.0  # who has a way to drive and comes nowhere for so long is stuck; a drive that only has a duration ends by that
@@ -41,6 +41,12 @@ class RefreshedLeaf(MotionLeaf):
         self.send(robot)
         return None
 
+    @property
+    def _stands(self) -> bool:
+        """True for a robot that is told to stand, which it can do without seeing anything."""
+        command = None if self._ticket is None else self._ticket.command
+        return self.is_blind and command is not None and command.flags % 10 == CommandType.VELOCITY and command.velocity == STILL
+
     def resume(self, robot: Robot) -> None:
         """Drive on."""
         self._was_accepted, self._sent_s = True, self.elapsed_s
@@ -50,7 +56,7 @@ class RefreshedLeaf(MotionLeaf):
     def follow(self, robot: Robot) -> Status:
         """Over, or refresh."""
         status = self.chain_status(robot)
-        trouble = self.chain_trouble(robot, status)
+        trouble = None if self._stands else self.chain_trouble(robot, status)
         if trouble is not None:
             return trouble
         way_m = abs(self._way.step(robot))

@@ -66,9 +66,11 @@ def troubled(world: World, name: str, seed: int) -> World:
 
 def blame(name: str, run: RunResult) -> str:
     """What a trip may not do, "" if it did nothing of that."""
+    may_end = frozenset() if name == MUD else TROUBLES[name].reasons
+    if run.collisions and not may_end & WALLS:
+        return f"touches something: {run.collisions} collisions"
     if run.result == "SUCCESS":
         assert run.final_pose is not None and run.estimated_pose is not None
         off_m = math.dist(run.final_pose[:2], run.estimated_pose[:2])
         return f"claims a position that is off by {off_m:.2f} m" if off_m > HONEST_M else ""
-    may_end = frozenset() if name == MUD else TROUBLES[name].reasons
     return "" if run.reason in may_end else f"ends with {run.reason or run.result}"

@@ -112,7 +112,9 @@ class Avoid:
         raw_rad = raw.position[1] if raw is not None and raw.stamp_s >= oldest_s else None
         pose, dead = _planar(self._pose(), oldest_s), _planar(self._dead(), oldest_s)
         check: FVectorState | None = self._check()
-        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), self._passers_by.are_awaited(now_s))
+        stand = drive is not None and drive.reason == reasons.ODOMETRY_FROZEN
+        walkers = self._passers_by.are_awaited(now_s)
+        senses = AvoidSenses(pose, dead, raw_rad, (data[0], data[1]), self._newest_view(), self._sonar(), walkers, stand)
         if check is None or check.reason not in reasons.PLACELESS:
             return senses
         return senses._replace(pose=None, no_pose=Verdict(reason=check.reason, text=check.text))

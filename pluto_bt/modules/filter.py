@@ -80,7 +80,7 @@ class Filter:
     def _look_at_check(self) -> None:
         """Carried to another place, what was seen round the robot is not there. With a silent sensor nobody knows a car's place."""
         check: FVectorState | None = self._check()
-        is_silent = check is not None and check.reason in (reasons.GYRO_STALE, reasons.SPEED_STALE)
+        is_silent = check is not None and check.reason in (reasons.LOST, reasons.GYRO_STALE, reasons.SPEED_STALE)
         self._doubt = Verdict(reason=check.reason, text=check.text) if check is not None and is_silent else ALL_WELL
         is_lost = check is not None and check.reason == reasons.LOST
         if is_lost and not self._was_lost:

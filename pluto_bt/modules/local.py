@@ -116,16 +116,17 @@ class Local:
 
     def _accept(self, source: str, post: Pose, now_s: float) -> None:
         """Adjust the track by a post. The setter is checked again here: it may have changed since the post was left."""
-        refused = refusal(post.setter, self._box.set_by) or self._adjust(post, now_s)
+        refused = refusal(post.setter, self._box.set_by) or self._adjust(source, post, now_s)
         if refused:
             self._say("warning", refused, "local", f"pose posted by {source} at {post.stamp_s:.3f} s not taken: {refused}")
             return
         self._box.set_by, self._setter_s = post.setter, now_s
         if post.setter != Setter.NOBODY:
             self._check.found()
+            self._markers.found(now_s)
         self._post_pose.put(post, now_s)
 
-    def _adjust(self, post: Pose, now_s: float) -> str:
+    def _adjust(self, source: str, post: Pose, now_s: float) -> str:
         if post.setter == Setter.NOBODY:  # the poster has ended: its last adjustment stays
             return ""
         if not all(map(math.isfinite, (*post.pose, *post.covariance))):
@@ -142,7 +143,7 @@ class Local:
         jump_m = 0.0 if then is None else math.dist(pose[:2], then.pose_map[:2])
         turned_rad = 0.0 if then is None else wrap_angle(pose[2] - then.pose_map[2])
         if self.track.adjust(post.stamp_s, pose, P):
-            if not self._wheels_know_turns and abs(turned_rad) > TURNED_RAD:
+            if source == "marker" and not self._wheels_know_turns and abs(turned_rad) > TURNED_RAD:  # a person who says so blames no gyro
                 self._sources.check.turn.put_right(now_s, turned_rad)
             if jump_m > JUMP_M:
                 self._say("warning", "pose-jump", "local", f"a post moves the position by {jump_m:.1f} m; it is believed")

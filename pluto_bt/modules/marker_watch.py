@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from pluto_bt.blackboard.messages import MarkerState
 from pluto_bt.modules.context import Context
 from pluto_bt.modules.marker import MarkerParameters
@@ -18,6 +20,11 @@ class MarkerWatch:
         self._most_s = context.parameters(MarkerParameters).silent_after_s
         self._passed, self._passed_s = 0, 0.0  # how many, and when the last of them arrived
         self._told = ("", "")
+        self._found_s = -math.inf
+
+    def found(self, now_s: float) -> None:
+        """Somebody has said where the car is: what was seen before that contradicts nothing any more."""
+        self._found_s = now_s
 
     def silence(self, now_s: float) -> tuple[str, str]:
         """Word and sentence while none has passed for long, or they tell of another place; "" else."""
@@ -27,7 +34,7 @@ class MarkerWatch:
         seen = sample.value if sample is not None and isinstance(sample.value, MarkerState) else None
         if sample is not None and seen is not None and seen.accepted_count != self._passed:
             self._passed, self._passed_s = seen.accepted_count, sample.written_s
-        if seen is not None and seen.is_elsewhere:
+        if sample is not None and seen is not None and seen.is_elsewhere and sample.written_s > self._found_s:
             return LOST, "the markers see the car elsewhere than wheels and gyro have brought it"
         if now_s - self._passed_s <= self._most_s:
             if self._told[0]:

@@ -170,7 +170,7 @@ class Avoid:
             self.verdict = kept(self.verdict, fault)
             self._goto.pause(now_s, dt_s)
             return self._post(0, 0.0, STILL, now_s)
-        if senses.waits_for_walker:
+        if senses.waits_for_walker or senses.wheels_stand:
             self._goto.pause(now_s, dt_s)
         points = self._points(now_s, senses.dead, avoidance)
         way = self._goto.step(now_s, senses.pose, senses.dead, points)

@@ -124,7 +124,8 @@ class Backing:
         turn_rad = max(-turnable_rad[0], min(turnable_rad[1], wanted_rad))
         c, s = math.cos(turn_rad), math.sin(turn_rad)
         turned = points.copy()
-        turned[:, 0], turned[:, 1] = c * points[:, 0] + s * points[:, 1], c * points[:, 1] - s * points[:, 0]
+        for x, y in ((0, 1), (3, 4)):  # places and velocities
+            turned[:, x], turned[:, y] = c * points[:, x] + s * points[:, y], c * points[:, y] - s * points[:, x]
         return turn_rad, first_contact(turned, self._outline.planes, -1.0, 0.0, FAR_M)[0]
 
     def _to_the_middle_rad(self, points: Array) -> float:

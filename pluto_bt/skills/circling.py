@@ -102,6 +102,10 @@ class Looks:
         """True during a look."""
         return self._since_s is not None
 
+    def pause(self) -> None:
+        """Nobody looked for a while: a look that was on begins anew."""
+        self._since_s = self._there_s = None
+
     def is_due(self, turns: float) -> bool:
         """True if a look is on, or due after so many turns."""
         return self.is_on or turns >= self._next

@@ -64,7 +64,7 @@ class Goto:
         self.limits = replace(most, speed_mps=speed_mps, turn_rate_radps=turn_radps)
         self._goal = command.position
         self._back_mps = min(speed_mps, BACK_MPS if behind is Behind.HEARD else p.blind_speed_mps)
-        self._is_blind = behind is Behind.UNKNOWN
+        self._is_blind, self._hears_behind = behind is Behind.UNKNOWN, behind is Behind.HEARD
         self._force = command.force[0] if command.force and command.force[0] > 0.0 else 1.0
         kind = split_flags(command.flags)
         self._sees = kind is not None and kind[0] is not Avoidance.NONE
@@ -86,6 +86,7 @@ class Goto:
         """Time in which the robot had to stand for a reason outside of goto (laser rebooting) does not count as being stuck."""
         self._progress_s = min(now_s, self._progress_s + dt_s)
         self._moved_s, self._came_s = min(now_s, self._moved_s + dt_s), min(now_s, self._came_s + dt_s)
+        self._back_s = min(now_s, self._back_s + dt_s)
 
     def step(self, now_s: float, pose: Planar, odometry: Planar, points: Array) -> Way:
         """The next decision.
@@ -171,8 +172,9 @@ class Goto:
             return False
         if self._is_blind and self._backing.known_m < self.parameters.back_off_m:
             return False
-        if now_s - max(self._came_s, self._braked_s) > HELD_S and self._has_come_m >= self.parameters.back_off_m:
-            return True  # on its way it came to where it is held: there it can go back
+        knows_behind = self._hears_behind or self._has_come_m >= self.parameters.back_off_m  # it came from there
+        if now_s - max(self._came_s, self._braked_s) > HELD_S and knows_behind:
+            return True
         if cannot_turn_back and (self._backing.is_leaving or steering.free_m < DEAD_END_M):
             return True
         sees_why = steering.free_m <= WEDGED_M and abs(steering.heading_rad) <= math.radians(10.0)
@@ -183,12 +185,10 @@ class Goto:
             self._backing.end()
             return False
         if self._backing.makes_way(odometry):
-            self._back_s = now_s
-            if self._backing.is_leaving:
-                self._progress_s = now_s
+            self._back_s = self._progress_s = now_s
         elif now_s - self._back_s > BACK_S:
             self._backing.end()
-            self._began, self._has_come_m = odometry, 0.0  # it is held that way too
+            self._began, self._has_come_m, self._hears_behind = odometry, 0.0, False  # it is held that way too
             return False
         return self._backing.goes_on(odometry, self.parameters.back_off_m, can_turn)
 

@@ -97,7 +97,7 @@ class LocalMap(LocalGrid):
             found = mark_ground(self.low_s, self._first_s, self.evidence, x, y, laser[2], angles, scan.ranges_m, cell, tilt_rad, height_m,
                                 reach_m, self.parameters.ground_step_m, scan.stamp_s, again_s)  # fmt: skip
             if found:
-                self._newest_low_s = scan.stamp_s
+                self._newest_low_s = max(self._newest_low_s, scan.stamp_s)
             self._changed(Window.around(x, y, reach_m / cell))
 
     def uncover(self) -> None:

@@ -46,7 +46,7 @@ def inside(chain: Array, first: Array, radius_m: float, large_m: float, distance
 
 def warm() -> None:
     """Use the kernel once, so that no later use waits for its compilation."""
-    along(np.zeros((1, 4)), np.zeros(1), np.zeros((1, 4)), 0.0, 0.0)
+    along(np.zeros((2, 4)), np.zeros(2), np.zeros((1, 4)), 0.0, 0.0)
 
 
 def _let_down(chain: Array, first: Array, radius_m: float, large_m: float) -> tuple[float, float] | None:

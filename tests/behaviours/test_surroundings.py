@@ -19,7 +19,7 @@ GOAL = (12.0, 0.0)
 
 def in_a_yard_with_one_gate() -> Surroundings:
     """The robot stands in a yard of 12 m with a gate in front of it."""
-    around = Surroundings(SKID, MotionParameters())
+    around = Surroundings(SKID, MotionParameters(), 0.1)
     map = around.map
     for x, y in ((-6.0, None), (6.0, None), (None, -6.0), (None, 6.0)):
         for k in np.arange(-6.0, 6.1, 0.5 * map.cell_m).tolist():
@@ -72,10 +72,8 @@ def a_scan(stamp_s: float, tilt_rad: float = 0.0) -> ScanView:
 
 
 def test_who_navigates_enters_each_scan_into_the_fine_map_and_one_a_second_into_the_coarse_one(robot: FakeRobot) -> None:
-    around = Surroundings(SKID, MotionParameters())
-    around.look_finely(0.05)
+    around = Surroundings(SKID, MotionParameters(), 0.1)
     entered = {"coarse": 0, "fine": 0}
-    assert around.fine is not None
     coarse, fine = around.map.add, around.fine.add
 
     def count(name: str, add: object) -> object:

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from estimation.kept_scans import FAR_KEYS, KEPT, KEY_WAY_M, LONGEST_GAP_S, KeptScans, held_against, is_far, pan_between
-from estimation.key_scan import KeyScan, is_good
+from estimation.key_scan import Beams, KeyScan, is_good
 from estimation.reckoning import Sums
 from estimation.se2 import Pose2, compose
 from pluto_bt.maps.scene import Scene
 from pluto_bt.maps.world import Shape, World
 
 ANGLES = np.linspace(-math.pi / 2, math.pi / 2, 361)
-BEAMS = (float(ANGLES[0]), float(ANGLES[1] - ANGLES[0]), 80.0)
+BEAMS = Beams(float(ANGLES[0]), float(ANGLES[1] - ANGLES[0]), 80.0)
 ROOM = Scene(World("room", shapes=(
     Shape("walls", "wall", np.array([(-9.0, -5.0), (12.0, -5.0), (12.0, 8.0), (-9.0, 8.0), (-9.0, -5.0)])),
     Shape("crate", "polygon", np.array([(3.0, 2.0), (4.0, 2.2), (3.8, 3.0), (3.0, 3.0)])),
@@ -40,7 +40,7 @@ def kept(*scans: KeyScan) -> KeptScans:
 
 def test_a_scan_is_held_against_the_key_scan_while_the_laser_looks_the_same_way() -> None:
     key, now = scan(0.0), scan(1.0, 0.3)
-    held = kept().compared(now, key, *BEAMS)
+    held = kept().compared(now, key, BEAMS)
     assert held is not None and held[0] is key and is_good(held[2])
     assert held[1].pose == pytest.approx((0.3, 0.0, 0.0)) and held[1].time_s == 1.0
     assert compose(held[2].step, (0.0, 0.0, 0.0)) == pytest.approx((0.3, 0.0, 0.0), abs=0.01)
@@ -49,14 +49,14 @@ def test_a_scan_is_held_against_the_key_scan_while_the_laser_looks_the_same_way(
 def test_a_laser_that_looks_left_and_right_by_turns_is_held_against_what_it_saw_on_the_same_side() -> None:
     left, right = scan(0.0, pan_rad=1.4), scan(0.2, pan_rad=-1.4)
     now = scan(0.4, 0.1, pan_rad=1.4)
-    held = kept(left, right).compared(now, right, *BEAMS)
+    held = kept(left, right).compared(now, right, BEAMS)
     assert held is not None and held[0] is left and is_good(held[2])
-    assert kept(right).compared(now, right, *BEAMS) is None, "nothing that it sees was seen before"
+    assert kept(right).compared(now, right, BEAMS) is None, "nothing that it sees was seen before"
 
 
 def test_of_two_on_the_same_side_the_newer_one_counts() -> None:
     older, newer = scan(0.0, pan_rad=1.4), scan(0.2, pan_rad=1.4)
-    held = kept(older, newer).compared(scan(0.6, pan_rad=1.4), scan(0.4, pan_rad=-1.4), *BEAMS)
+    held = kept(older, newer).compared(scan(0.6, pan_rad=1.4), scan(0.4, pan_rad=-1.4), BEAMS)
     assert held is not None and held[0] is newer
 
 
@@ -64,11 +64,11 @@ def test_what_is_forgotten_or_long_ago_is_not_asked() -> None:
     first = scan(0.0, pan_rad=1.4)
     those = kept(first, *(scan(0.1 + 0.1 * k, pan_rad=-1.4) for k in range(KEPT)))
     now, away = scan(9.0, pan_rad=1.4), scan(8.0, pan_rad=-1.4)
-    assert those.compared(now, away, *BEAMS) is None, "so many more came since"
+    assert those.compared(now, away, BEAMS) is None, "so many more came since"
     those.keep(first)
-    assert those.compared(now, away, *BEAMS) is not None
+    assert those.compared(now, away, BEAMS) is not None
     those.forget()
-    assert those.compared(now, away, *BEAMS) is None
+    assert those.compared(now, away, BEAMS) is None
 
 
 @pytest.mark.parametrize(
@@ -77,11 +77,11 @@ def test_what_is_forgotten_or_long_ago_is_not_asked() -> None:
     ids=["a minute", "longer", "itself", "too far away"],
 )
 def test_two_scans_are_compared_within_a_time_and_a_way(gap_s: float, way_m: float, is_comparable: bool) -> None:
-    assert (held_against(scan(1.0), scan(1.0 + gap_s, way_m), *BEAMS) is not None) is is_comparable
+    assert (held_against(scan(1.0), scan(1.0 + gap_s, way_m), BEAMS) is not None) is is_comparable
 
 
 def test_scans_of_another_laser_are_not_compared() -> None:
-    assert kept().compared(scan(1.0, n_beams=181), scan(0.0), *BEAMS) is None
+    assert kept().compared(scan(1.0, n_beams=181), scan(0.0), BEAMS) is None
 
 
 def test_how_far_and_how_much_panned_is_said_the_shorter_way_round() -> None:

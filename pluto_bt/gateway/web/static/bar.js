@@ -4,6 +4,7 @@ import { age, byId, clock, degrees, say, show } from "./dom.js";
 import { missionReason, missionWords } from "./mission.js";
 
 const FAST = new Set(["ATRV2/Drive/Raw"]), MOMENT_S = 0.3;
+const PLACELESS = new Set(["lost", "no-pose", "gyro-stale", "speed-stale"]); // the position must not be believed
 const SILENT_MS = 1200; // the answer to a ping comes each second, if nothing else does
 
 export class Bar {
@@ -67,8 +68,8 @@ export class Bar {
       say(byId("pose-theta"), degrees(Math.atan2(Math.sin(pose[3]), Math.cos(pose[3]))));
     }
     const element = byId("pose-age");
-    const check = this.store.fields("Localization/Check")?.reason;
-    say(element, isOld ? (pose ? `${age(this.store.age_s("Localization/Pose"))} old` : "no pose yet") : check === "lost" ? "lost" : "");
+    const doubt = this.store.fields("Localization/Check")?.reason ?? "";
+    say(element, isOld ? (pose ? `${age(this.store.age_s("Localization/Pose"))} old` : "no pose yet") : PLACELESS.has(doubt) ? doubt : "");
     element.parentElement.classList.toggle("old", isOld);
   }
 
