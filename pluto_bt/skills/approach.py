@@ -22,7 +22,6 @@ SLANT = 1.2  # a slanting wall comes nearer by so much more than one that stands
 WIDEST_RAD = math.radians(60.0)  # along a cone's edge farther off the way than this, what stands comes nearer without bound …
 STANDING_M = 0.02  # … unless the robot as good as stands, and TURNING_M is how far the end of a cone may sweep
 TURNING_M = 0.06
-STILL_M = 0.002  # what leaps has come by itself only if the robot truly stands: the least turn brings a post into the edge of a cone
 SWEPT_M = 0.2  # in three rounds: a turning cone is a sixth of that from where it is thought, which is less than what INSIDE leaves out
 GRAZING = 8.0  # a wall that a cone's edge grazes comes nearer by so much more than the end of the cone sweeps: at seven degrees
 FARTHER = SLANT / math.cos(WIDEST_RAD)  # what stands goes away by at most so much more than the robot's own way
@@ -145,7 +144,7 @@ def moves(heard_m: Array, places: Array, axes: Array, k: int, is_small: bool, ha
     sweeps_m = min(last_m, HEAR_M) * abs(places[rounds - 1, 2] - places[0, 2])
     least_m = NEARER_M + GRAZING * sweeps_m
     gap_m = min(first_m, second_m) - last_m if comes else last_m - max(first_m, second_m)
-    if moved_m + sweeps_m < STILL_M and gap_m > least_m:
+    if moved_m + sweeps_m < STANDING_M and gap_m > least_m:
         return True
     is_even = total_m > least_m and most_m < EVENLY * total_m
     return bool(is_even and sweeps_m + (0.0 if comes else moved_m) < TURNING_M)

@@ -83,7 +83,7 @@ HELD = [(leaf, word) for leaf in LEAVES for word in sorted({*WAITING, "laser", "
 
 @pytest.mark.parametrize(("leaf", "word"), [pair for pair in HELD if pair != ("MakeTurn", "laser-fatal")])  # a turn is over after 30 s anyway
 def test_a_leaf_that_is_held_back_says_word_and_sentence_and_fails_with_them_in_the_end(stage: Any, leaf: str, word: str) -> None:
-    patience_s = WAITING.get(word, 1.0)
+    patience_s = 10.0 if (leaf, word) == ("MakeTurn", "lost") else WAITING.get(word, 1.0)  # for markers that see the car elsewhere
     xml = f'<{leaf} {LEAVES[leaf]} reason="{{why}}"/>'
     if patience_s > 0.3:
         result, mission = drive(stage, xml, held(word), min(patience_s, 5.0) - 0.2)

@@ -274,8 +274,8 @@ def test_what_was_as_near_before_is_not_near_all_of_a_sudden(from_m: float, hows
     assert {how for found in said[5:] for how in found[:, 3].tolist()} == hows
 
 
-@pytest.mark.parametrize("turned_rad", [0.0, 0.005])
-def test_what_leaps_into_a_cone_is_somebody_only_if_the_robot_truly_stands(turned_rad: float) -> None:
+@pytest.mark.parametrize("turned_rad", [0.0, 0.1])
+def test_what_leaps_into_a_cone_is_somebody_only_if_the_robot_stands(turned_rad: float) -> None:
     way = [(0.0, 0.0, 0.0)] * 6 + [(0.0, 0.0, turned_rad)] * 4
     said = heard("pioneer", way, [(HALL, *([post(-1.5, 0.0)] if k > 5 else [])) for k in range(10)], False)
     assert any(len(found) for found in said) == (turned_rad == 0.0)

@@ -240,5 +240,6 @@ def test_markers_that_are_all_off_by_two_metres_are_told(scenario: Play, corrido
     script = '<script><at t="10"><fault device="marker" kind="jump" value="2"/></at></script>'
     corridor.write_text(CORRIDOR.replace(ROBOT, script + ROBOT), encoding="utf-8")
     run = trip(scenario, corridor, 1, 3)
-    assert (run.result, run.reason) in {("FAILURE", "hindered"), ("FAILURE", "outside-map")}, "blind, it drives where they say, and there is no corridor"
+    assert run.result == "FAILURE", "blind, it drives where they say, and there is no corridor"
+    assert run.reason in {"hindered", "outside-map"}
     assert "moves the position by 2.8 m" in run.said("pose-jump")[0]
