@@ -111,7 +111,7 @@ class Goto:
         to_go_m = distance_m - 0.5 * self._tolerance_m
         steering = self._steer.choose(points, goal_rad, to_go_m, self._force, turnable_rad, odometry[2])
         aim_rad = self._backing.aim(steering.wish_rad, odometry[2])
-        can_turn = -turnable_rad[0] <= aim_rad <= turnable_rad[1]
+        can_turn = -turnable_rad[0] <= aim_rad <= turnable_rad[1] or max(turnable_rad) >= math.pi  # the long way round will do
         is_behind = abs(aim_rad) > BEHIND_RAD and (abs(goal_rad) > BEHIND_RAD or self._backing.is_leaving)
         if not self._backing.is_on and self._is_wedged(steering, is_behind and not can_turn, now_s):
             self._backing.begin(odometry, aim_rad, self._is_blind)
