@@ -185,7 +185,9 @@ class Goto:
             self._backing.end()
             return False
         if self._backing.makes_way(odometry):
-            self._back_s = self._progress_s = now_s
+            self._back_s = now_s
+            if self._backing.is_leaving:
+                self._progress_s = now_s
         elif now_s - self._back_s > BACK_S:
             self._backing.end()
             self._began, self._has_come_m, self._hears_behind = odometry, 0.0, False  # it is held that way too
