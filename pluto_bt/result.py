@@ -23,7 +23,7 @@ class RunResult(msgspec.Struct, kw_only=True):
         ticks: of the mission's tree.
         distance_m: the way that the robot really drove.
         collisions: contacts of the outline with a speed of its own towards them of more than 0.05 m/s.
-        hit_by: the other contacts: who walked into the robot.
+        hit_by: the other contacts: who walked into the robot, and what it touched itself at 0.05 m/s or slower.
         min_clearance_m: the least distance of the outline from anything solid; null if there is nothing.
         final_pose: where the robot really stood at the end.
         estimated_pose: where it believed to stand.

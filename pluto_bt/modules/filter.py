@@ -78,11 +78,11 @@ class Filter:
         self._status.put(self.skill.status(now_s), now_s)
 
     def _look_at_check(self) -> None:
-        """Carried to another place, what was seen round the robot is not there. With a silent sensor nobody knows a car's place."""
+        """Carried to another place, what was seen round the robot is not there. Then, and while a sensor is silent, nobody knows a car's place."""
         check: FVectorState | None = self._check()
-        is_silent = check is not None and check.reason in (reasons.LOST, reasons.GYRO_STALE, reasons.SPEED_STALE)
-        self._doubt = Verdict(reason=check.reason, text=check.text) if check is not None and is_silent else ALL_WELL
         is_lost = check is not None and check.reason == reasons.LOST
+        is_doubtful = is_lost or (check is not None and check.reason in (reasons.GYRO_STALE, reasons.SPEED_STALE))
+        self._doubt = Verdict(reason=check.reason, text=check.text) if check is not None and is_doubtful else ALL_WELL
         if is_lost and not self._was_lost:
             self.skill.forget()
         self._was_lost = is_lost

@@ -10,6 +10,7 @@ import pytest
 
 import pluto_bt.behaviours
 import pluto_bt.skills
+from pluto_bt.behaviours.make_turn import MakeTurn
 from pluto_bt.behaviours.reasons import REASONS, SENSORS, WAITING, may_pass, sentence
 from pluto_bt.blackboard.codes import LinkStatus
 from pluto_bt.blackboard.messages import FVectorState, Pose
@@ -83,7 +84,7 @@ HELD = [(leaf, word) for leaf in LEAVES for word in sorted({*WAITING, "laser", "
 
 @pytest.mark.parametrize(("leaf", "word"), [pair for pair in HELD if pair != ("MakeTurn", "laser-fatal")])  # a turn is over after 30 s anyway
 def test_a_leaf_that_is_held_back_says_word_and_sentence_and_fails_with_them_in_the_end(stage: Any, leaf: str, word: str) -> None:
-    patience_s = 10.0 if (leaf, word) == ("MakeTurn", "lost") else WAITING.get(word, 1.0)  # for markers that see the car elsewhere
+    patience_s = {**WAITING, **(MakeTurn.PATIENCE_S if leaf == "MakeTurn" else {})}.get(word, 1.0)
     xml = f'<{leaf} {LEAVES[leaf]} reason="{{why}}"/>'
     if patience_s > 0.3:
         result, mission = drive(stage, xml, held(word), min(patience_s, 5.0) - 0.2)
